@@ -1,0 +1,24 @@
+#pragma once
+// File -> Scene.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "solver/model/scene.h"
+
+namespace clerestory {
+
+/// What the command line says about a model given directly; a scene file says it itself.
+struct ReadOptions {
+  std::optional<std::string> unit;  ///< m | cm | mm | ft | in
+  std::optional<std::string> up;    ///< y | z
+  std::optional<std::string> sky;   ///< NAME[:LUX]
+};
+
+/// Reads a scene file (.json) or a model (.obj .glb .gltf .ply .stl .off .dae .fbx .ifc) into metres, z up.
+///
+/// throws  InputError naming file, place (line or element), value, what is allowed and what to do.
+Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
+
+}  // namespace clerestory

@@ -1,0 +1,53 @@
+#pragma once
+// Light that does not come from surfaces of the model.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/model/channels.h"
+#include "solver/model/vec.h"
+
+namespace clerestory {
+
+/// Point source of equal intensity in all directions.
+struct PointLuminaire {
+  std::string name;
+  Vec3 position;   ///< [m]
+  Spectrum power;  ///< total flux [W]
+};
+
+/// glTF KHR_lights_punctual spot: intensity falls smoothly from the inner to the outer half-angle.
+struct SpotLuminaire {
+  std::string name;
+  Vec3 position;         ///< [m]
+  Vec3 direction;        ///< unit, away from the lamp
+  Spectrum intensity;    ///< on the axis [W/sr]
+  double inner_angle = 0, outer_angle = 0;  ///< half-angles [rad]
+};
+
+enum class SkyModel { uniform, cie_overcast };
+
+/// Sky of luminance distribution `model`, scaled to a horizontal irradiance; virtual ground below the horizon.
+struct Sky {
+  SkyModel model = SkyModel::cie_overcast;
+  Spectrum horizontal_irradiance;   ///< of the sky alone, on an open horizontal plane [W/m2]
+  double ground_reflectance = 0.2;  ///< of the virtual ground below the horizon [1]
+};
+
+/// Sun: a disc of 0.533 degrees of uniform radiance.
+struct Sun {
+  Vec3 direction;               ///< unit, to the sun
+  Spectrum normal_irradiance;   ///< on a plane that faces the sun [W/m2]
+};
+
+struct Lights {
+  std::vector<PointLuminaire> points;
+  std::vector<SpotLuminaire> spots;
+  std::optional<Sky> sky;
+  std::vector<Sun> suns;  ///< the scene's sun, and directional lights of a glTF file
+
+  bool empty() const { return points.empty() && spots.empty() && !sky && suns.empty(); }
+};
+
+}  // namespace clerestory

@@ -1,0 +1,17 @@
+#pragma once
+// Loops over all cores. TBB stays behind this header.
+
+#include <cstddef>
+#include <functional>
+
+namespace clerestory {
+
+/// Threads used from now on by the whole process; 0 means all cores.
+void set_thread_count(int threads);
+int thread_count();
+
+/// Calls body(begin, end) for disjoint ranges that cover [0, n), at most `grain` long, on several threads. Bodies write
+/// only to what their indices own, so the result does not depend on how ranges fall on threads.
+void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+}  // namespace clerestory

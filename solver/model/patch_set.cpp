@@ -1,0 +1,60 @@
+#include "solver/model/patch_set.h"
+
+#include <numeric>
+
+namespace clerestory {
+namespace {
+
+bool side_reflects_and_emits(const Material& material, Side side) { return side == kFront || material.sides == 2; }
+
+}  // namespace
+
+std::array<Vec3, 3> PatchSet::corner_positions(PatchId p) const {
+  const auto& c = corners[triangle[p]];
+  if (side[p] == kFront) return {vertices[c[0]], vertices[c[1]], vertices[c[2]]};
+  return {vertices[c[0]], vertices[c[2]], vertices[c[1]]};
+}
+
+double PatchSet::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
+
+void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
+  PatchSet& p = patches;
+  p.triangle.clear();
+  p.side.clear();
+  p.area.clear();
+  p.normal.clear();
+  p.side_patch.assign(p.triangle_count(), {PatchId{}, PatchId{}});
+  for (std::size_t t = 0; t < p.triangle_count(); ++t) {
+    if (p.is_glass(TriangleId{t})) continue;
+    const auto& c = p.corners[t];
+    const Vec3 a = p.vertices[c[0]];
+    const Vec3 scaled_normal = cross(p.vertices[c[1]] - a, p.vertices[c[2]] - a);
+    const double area = length(scaled_normal) / 2;
+    if (!(area > 0)) continue;
+    for (const Side side : {kFront, kBack}) {
+      if (!wanted[2 * t + side]) continue;
+      p.side_patch[t][side] = PatchId{p.triangle.size()};
+      p.triangle.push_back(TriangleId{t});
+      p.side.push_back(side);
+      p.area.push_back(area);
+      p.normal.push_back(normalized(scaled_normal) * (side == kFront ? 1.0 : -1.0));
+    }
+  }
+
+  std::vector<double> emitting_area(p.materials.size(), 0.0);
+  for (std::size_t i = 0; i < p.patch_count(); ++i) {
+    const MaterialId m = p.material(PatchId{i});
+    if (side_reflects_and_emits(p.materials[m], p.side[i])) emitting_area[m] += p.area[i];
+  }
+  p.rho = Field(p.patch_count(), p.channels);
+  p.M = Field(p.patch_count(), p.channels);
+  for (std::size_t i = 0; i < p.patch_count(); ++i) {
+    const MaterialId m = p.material(PatchId{i});
+    const Material& material = p.materials[m];
+    if (!side_reflects_and_emits(material, p.side[i])) continue;
+    p.rho.set(i, material.reflectance);
+    p.M.set(i, material.total_power ? *material.total_power / emitting_area[m] : material.exitance);
+  }
+}
+
+}  // namespace clerestory

@@ -1,0 +1,58 @@
+#pragma once
+// The meshed scene as arrays: T conforming triangles, and N patches, each one side of a triangle.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "solver/model/channels.h"
+#include "solver/model/ids.h"
+#include "solver/model/material.h"
+#include "solver/model/vec.h"
+
+namespace clerestory {
+
+/// Front is the side from which the corners run counter-clockwise.
+enum Side : std::uint8_t { kFront = 0, kBack = 1 };
+
+/// A triangle always blocks light (glass: passes its share); its sides take part in transport as patches.
+/// All coordinates are relative to `origin`, so that float rays lose nothing in georeferenced models.
+struct PatchSet {
+  Vec3 origin;       ///< of the local frame, in the scene's frame [m]
+  int channels = 1;  ///< 1 or 3
+
+  // T triangles on V vertices. Triangles that share an edge share its two vertices.
+  std::vector<Vec3> vertices;                               ///< V, local frame [m]
+  std::vector<std::array<VertexId, 3>> corners;             ///< T
+  std::vector<std::array<MaterialId, 2>> side_material;     ///< T, by Side
+  std::vector<std::array<SurfaceId, 2>> side_surface;       ///< T, by Side
+  std::vector<std::array<PatchId, 2>> side_patch;           ///< T, by Side; invalid where that side takes no part
+
+  // N patches.
+  std::vector<TriangleId> triangle;  ///< N
+  std::vector<Side> side;            ///< N
+  std::vector<double> area;          ///< N [m2]
+  std::vector<Vec3> normal;          ///< N, unit, away from the surface on the patch's side
+  Field rho;                         ///< N, reflectance [1]
+  Field M;                           ///< N, exitance [W/m2]
+
+  std::vector<Material> materials;    ///< by MaterialId
+  std::vector<std::string> surfaces;  ///< by SurfaceId
+
+  std::size_t patch_count() const { return triangle.size(); }
+  std::size_t triangle_count() const { return corners.size(); }
+  MaterialId material(PatchId p) const { return side_material[triangle[p]][side[p]]; }
+  SurfaceId surface(PatchId p) const { return side_surface[triangle[p]][side[p]]; }
+  bool is_glass(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::glass; }
+  /// Corner positions of patch p, counter-clockwise seen from its side.
+  std::array<Vec3, 3> corner_positions(PatchId p) const;
+  double total_area() const;
+};
+
+/// (Re)builds the patch arrays from the triangles: one patch for each side with wanted[2 * t + side], in that order;
+/// glass has none. Area, normal, rho and M follow from the materials; a material's total power is shared over the
+/// area of its emitting patches; the back of a one-sided material is black.
+void make_patches(PatchSet& patches, const std::vector<bool>& wanted);
+
+}  // namespace clerestory

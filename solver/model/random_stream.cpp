@@ -1,0 +1,73 @@
+#include "solver/model/random_stream.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  return __builtin_bswap32(x);
+}
+
+/// Scrambles bit k by a hash of the bits below it: an Owen scramble of the reversed number.
+constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  return reverse_bits(scramble_reversed(reverse_bits(x), seed));
+}
+
+/// Direction numbers of dimensions 1 to 3 (dimension 0 is the bit reversal), from primitive polynomials of degree
+/// 1, 2, 3 with initial numbers {1}, {1, 3}, {1, 3, 1} of the new-joe-kuo-6 table.
+struct Directions {
+  std::uint32_t v[3][32];
+};
+
+constexpr Directions make_directions() {
+  Directions d{};
+  struct Polynomial {
+    int degree;
+    std::uint32_t coefficients, first[3];
+  };
+  constexpr Polynomial polynomials[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
+  for (int dim = 0; dim < 3; ++dim) {
+    const auto& [s, a, m] = polynomials[dim];
+    for (int i = 0; i < 32; ++i) {
+      if (i < s) {
+        d.v[dim][i] = m[i] << (31 - i);
+        continue;
+      }
+      d.v[dim][i] = d.v[dim][i - s] ^ (d.v[dim][i - s] >> s);
+      for (int k = 1; k < s; ++k) d.v[dim][i] ^= ((a >> (s - 1 - k)) & 1u) * d.v[dim][i - k];
+    }
+  }
+  return d;
+}
+
+constexpr Directions kDirections = make_directions();
+
+}  // namespace
+
+std::array<double, 4> sobol4(std::uint32_t index, std::uint64_t key) {
+  const auto key_low = static_cast<std::uint32_t>(key), key_high = static_cast<std::uint32_t>(key >> 32);
+  const std::uint32_t i = owen_scramble(index, key_low);  // shuffles the order within every power of two
+  std::uint32_t x[4] = {reverse_bits(i), 0, 0, 0};
+  for (std::uint32_t bits = i, b = 0; bits; bits >>= 1, ++b)
+    if (bits & 1u)
+      for (int dim = 0; dim < 3; ++dim) x[dim + 1] ^= kDirections.v[dim][b];
+  std::array<double, 4> u;
+  for (std::uint32_t dim = 0; dim < 4; ++dim) {
+    const auto seed = static_cast<std::uint32_t>(mix_bits(key + 0x9e3779b97f4a7c15ULL * (dim + 1)) ^ key_high);
+    u[dim] = static_cast<double>(owen_scramble(x[dim], seed)) * 0x1p-32;
+  }
+  return u;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,65 @@
+#pragma once
+// What was read: surfaces as polygons, materials, lights, sensors and settings. Nothing is meshed or checked for
+// geometry defects here; coordinates are metres, z up, in double.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/model/ids.h"
+#include "solver/model/light_spec.h"
+#include "solver/model/material.h"
+#include "solver/model/sensors.h"
+#include "solver/model/vec.h"
+
+namespace clerestory {
+
+/// Polygons that share a vertex array. Face f has corners corner[face_begin[f]] .. corner[face_begin[f + 1] - 1],
+/// counter-clockwise around its front. A polygon may be concave, and a hole may be joined to the outside by a
+/// doubled edge (as OBJ writers do).
+struct PolygonSoup {
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> corner;
+  std::vector<std::uint32_t> face_begin{0};  ///< F + 1
+  std::vector<MaterialId> material;          ///< F
+  std::vector<SurfaceId> surface;            ///< F
+
+  std::size_t face_count() const { return material.size(); }
+  void add_vertex(const Vec3& p) { vertices.push_back(p); }
+  void add_corner(std::uint32_t vertex) { corner.push_back(vertex); }
+  void end_face(MaterialId m, SurfaceId s) {
+    face_begin.push_back(static_cast<std::uint32_t>(corner.size()));
+    material.push_back(m);
+    surface.push_back(s);
+  }
+};
+
+/// Settings a scene file may hold under "solver"; a command line option wins over them.
+struct SolverSettings {
+  std::optional<std::string> method, accuracy;
+  std::optional<double> max_element;   ///< [m]
+  std::optional<double> target_error;  ///< RMS relative [1]
+  std::optional<double> time_limit;    ///< [s]
+  std::optional<std::uint64_t> seed;
+};
+
+struct Scene {
+  std::string file;
+  PolygonSoup polygons;
+  std::vector<Material> materials;      ///< by MaterialId
+  std::vector<std::string> surfaces;    ///< names, by SurfaceId
+  Lights lights;
+  std::vector<SensorSet> sensors;
+  SolverSettings settings;
+  std::vector<std::string> unused_materials;  ///< material rules of the scene file that matched nothing
+  std::vector<std::string> warnings;          ///< what the reader assumed or left out, for people
+
+  /// 1 when every reflectance, exitance, transmittance and light is grey, else 3.
+  int channels() const;
+};
+
+/// Every colour of the scene replaced by its luminous mean.
+void make_grey(Scene& scene);
+
+}  // namespace clerestory

@@ -1,0 +1,37 @@
+#pragma once
+// What a method returns: radiosity and irradiance of every patch, the energy balance, and how it got there.
+
+#include <string>
+#include <vector>
+
+#include "solver/model/channels.h"
+
+namespace clerestory {
+
+/// Flux [W], luminous mean over the channels.
+struct EnergyBalance {
+  double emitted = 0;   ///< by surfaces and luminaires; from sky and sun, what arrives on surfaces first
+  double absorbed = 0;  ///< by surfaces and glass
+  double escaped = 0;   ///< left the scene
+  double unshot = 0;    ///< still on its way when the method stopped; covered by the ambient term
+  /// (emitted - absorbed - escaped - unshot) / emitted [1], never corrected away.
+  double imbalance() const { return emitted > 0 ? (emitted - absorbed - escaped - unshot) / emitted : 0; }
+};
+
+enum class StopReason { converged, time_limit, interrupted, iteration_limit };
+
+struct Solution {
+  std::string method;
+  Field E;          ///< N, mean irradiance of each patch, ambient included [W/m2]
+  Field B;          ///< N, radiosity M + rho E [W/m2]
+  Field std_error;  ///< N, standard error of E; empty unless the method is a random estimate of known error
+  Spectrum ambient; ///< irradiance added for light not yet shot [W/m2]
+  EnergyBalance energy;
+  StopReason stop = StopReason::converged;
+  long iterations = 0;           ///< shots, sweeps or paths, as the method counts
+  double residual = 0;           ///< unshot or changed flux / emitted flux [1]
+  unsigned long long rays = 0;
+  std::vector<std::string> log;  ///< a line a round, for --verbose
+};
+
+}  // namespace clerestory

@@ -1,0 +1,24 @@
+#pragma once
+// Where the solution is shown: patches as triangles with vertices shared where the surface is smooth.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "solver/model/channels.h"
+#include "solver/model/vec.h"
+
+namespace clerestory {
+
+/// N triangles (cell i is patch i) on P points. Two patches share a point only where the surface goes on smoothly on
+/// that side of it: not around corners, not over rims, not past a partition that stands on it, not across materials.
+struct VertexLightmap {
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< N, points, counter-clockwise from the lit side
+  std::vector<Vec3> position;                         ///< P, local frame of the PatchSet [m]
+  std::vector<Vec3> normal;                           ///< P, unit, mean of the patches that share the point
+  std::vector<Vec3> sample_position;                  ///< P, moved a little into the surface, off edges and contacts [m]
+  std::vector<std::uint32_t> patch_of_point;          ///< P, one of the patches that share the point
+  Field E;                                            ///< P, irradiance [W/m2]; filled after the solve
+};
+
+}  // namespace clerestory

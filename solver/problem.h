@@ -1,0 +1,20 @@
+#pragma once
+// What every method works on.
+
+#include "solver/model/light_spec.h"
+#include "solver/model/patch_set.h"
+#include "solver/visibility/ray_scene.h"
+
+namespace clerestory {
+
+/// References only: patches, rays and lights outlive it. Light positions are in the patches' local frame.
+struct Problem {
+  const PatchSet& patches;
+  const RayScene& rays;
+  const Lights& lights;
+};
+
+/// Lights moved into the local frame of the patches.
+Lights to_local_frame(const Lights& lights, const Vec3& origin);
+
+}  // namespace clerestory

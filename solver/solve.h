@@ -1,0 +1,39 @@
+#pragma once
+// Problem -> Solution, by the method asked for.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "solver/model/monitor.h"
+#include "solver/model/solution.h"
+#include "solver/problem.h"
+
+namespace clerestory {
+
+enum class Method { progressive, gauss_seidel, jacobi, path };
+enum class Accuracy { draft, standard, fine };
+
+/// Names as typed by users, in the order of the enumerators.
+inline constexpr std::string_view kMethodNames[] = {"progressive", "gauss-seidel", "jacobi", "path"};
+inline constexpr std::string_view kAccuracyNames[] = {"draft", "standard", "fine"};
+
+struct SolveOptions {
+  Method method = Method::progressive;
+  Accuracy accuracy = Accuracy::standard;
+  std::uint64_t seed = 1;
+  int tighten = 0;  ///< times that the ray counts were doubled to reach a target error
+};
+
+/// Triangles to aim for when no longest edge is given.
+double target_triangles(Accuracy accuracy);
+
+/// Radiosity and irradiance of every patch.
+///
+/// throws   InputError when the method needs more memory than there is.
+/// Stops early when the monitor says so, and returns what is solved so far, marked in Solution::stop.
+/// Threads: same bits for any thread count.
+Solution solve(const Problem& problem, const SolveOptions& options, const Monitor& monitor = {});
+
+}  // namespace clerestory

@@ -10,6 +10,11 @@
 
 namespace clerestory {
 
+struct Ray {
+  Vec3 origin;     ///< already lifted off its surface, see RayScene::lift() [m]
+  Vec3 direction;  ///< unit
+};
+
 /// What a ray met first.
 struct Hit {
   PatchId patch;                ///< the side it met; invalid when it escaped, or met a side that takes no part
@@ -20,45 +25,46 @@ struct Hit {
   bool escaped() const { return !triangle.valid(); }
 };
 
-/// Where a ray starts: a point of a patch, or in free space when the triangle is invalid.
-struct RayStart {
-  Vec3 point;           ///< local frame [m]
-  Vec3 normal;          ///< side the ray leaves from; zero in free space
-  TriangleId triangle;  ///< never met by the ray
-};
-
-/// Sixteen segments for one packet, as separate coordinates. Ends are pulled in a little, so that the surfaces they
-/// lie on do not block.
+/// Sixteen segments for one packet, as separate coordinates; both ends already lifted off their surfaces.
 struct SegmentPacket {
   alignas(64) std::array<float, 16> from_x, from_y, from_z, to_x, to_y, to_z;
+
+  void set(int lane, const Vec3& from, const Vec3& to) {
+    const auto k = static_cast<std::size_t>(lane);
+    from_x[k] = static_cast<float>(from.x), from_y[k] = static_cast<float>(from.y);
+    from_z[k] = static_cast<float>(from.z), to_x[k] = static_cast<float>(to.x);
+    to_y[k] = static_cast<float>(to.y), to_z[k] = static_cast<float>(to.z);
+  }
 };
 
-/// Read-only, thread safe. Opaque triangles block; glass takes its share.
+/// Read-only, thread safe. Opaque triangles block; glass takes its share. Knows triangles only, so it stays valid when
+/// make_patches() changes which sides take part.
 class RayScene {
  public:
+  /// Deterministic for any thread count: the tree is built by one thread.
   explicit RayScene(const PatchSet& patches);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
 
-  /// First surface met from `start` along the unit `direction`.
-  Hit first_hit(const PatchSet& patches, const RayStart& start, const Vec3& direction) const;
+  /// First surface met by each ray, `patches` telling which side takes part as which patch.
+  void first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const;
+  Hit first_hit(const PatchSet& patches, const Ray& ray) const;
 
-  /// First surfaces met by several rays from one start.
-  void first_hits(const PatchSet& patches, const RayStart& start, std::span<const Vec3> directions,
-                  std::span<Hit> hits) const;
-
-  /// Share of light that passes from start to `end` (0 when something opaque blocks), per channel.
-  Spectrum transmittance(const PatchSet& patches, const RayStart& start, const Vec3& end) const;
-  /// The same to infinity along the unit `direction`.
-  Spectrum transmittance_to_infinity(const PatchSet& patches, const RayStart& start, const Vec3& direction) const;
-
-  /// Bit k is set when nothing opaque blocks segment k of the packet; glass is ignored. `active` has a bit for each
-  /// segment that counts.
+  /// Bit k is set when nothing opaque blocks segment k; glass is ignored. `active` has a bit for each segment to test.
   std::uint16_t visible16(const SegmentPacket& segments, std::uint16_t active = 0xffff) const;
 
+  /// Share of light that passes from `from` to `to` (both lifted): 0 when something opaque blocks.
+  Spectrum transmittance(const Vec3& from, const Vec3& to) const;
+
+  /// Share that glass lets through between two points that see each other; 1 without glass.
+  Spectrum glass_transmittance(const Vec3& from, const Vec3& to) const;
+
   bool has_glass() const;
-  /// Largest distance between two points of the scene [m].
+  /// Distance by which ray ends are lifted along their surface's normal, so that rounding to float cannot put them
+  /// behind it: a few units in the last place at the rim of the scene [m].
+  double lift() const;
+  /// Length of the diagonal of the bounding box [m].
   double diameter() const;
 
  private:

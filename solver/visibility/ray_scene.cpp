@@ -1,0 +1,205 @@
+#include "solver/visibility/ray_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace clerestory {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Device {
+  RTCDevice handle = rtcNewDevice("threads=1,set_affinity=0");
+  Device() {
+    if (!handle) throw std::runtime_error("Embree: no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
+  }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  ~Device() { rtcReleaseDevice(handle); }
+};
+
+/// One Embree scene over some triangles of the PatchSet; primitive k is triangle of_primitive[k].
+struct Surfaces {
+  RTCScene handle = nullptr;
+  std::vector<std::uint32_t> of_primitive;
+  Surfaces() = default;
+  Surfaces(const Surfaces&) = delete;
+  Surfaces& operator=(const Surfaces&) = delete;
+  ~Surfaces() {
+    if (handle) rtcReleaseScene(handle);
+  }
+
+  void build(RTCDevice device, const PatchSet& patches, bool glass) {
+    for (std::size_t t = 0; t < patches.triangle_count(); ++t)
+      if (patches.is_glass(TriangleId{t}) == glass) of_primitive.push_back(static_cast<std::uint32_t>(t));
+    handle = rtcNewScene(device);
+    rtcSetSceneFlags(handle, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(handle, RTC_BUILD_QUALITY_MEDIUM);
+    if (!of_primitive.empty()) {
+      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+      auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), patches.vertices.size()));
+      auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), of_primitive.size()));
+      if (!vertex || !index) throw std::bad_alloc();
+      for (const Vec3& v : patches.vertices)
+        for (int axis = 0; axis < 3; ++axis) *vertex++ = static_cast<float>(v[axis]);
+      for (const std::uint32_t t : of_primitive)
+        for (const VertexId v : patches.corners[t]) *index++ = v.value;
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometryByID(handle, geometry, 0);
+      rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(handle);
+  }
+};
+
+RTCIntersectContext context(RTCIntersectContextFlags flags) {
+  RTCIntersectContext c;
+  rtcInitIntersectContext(&c);
+  c.flags = flags;
+  return c;
+}
+
+RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float far_t) {
+  RTCRayHit r{};
+  r.ray.org_x = static_cast<float>(origin.x), r.ray.org_y = static_cast<float>(origin.y);
+  r.ray.org_z = static_cast<float>(origin.z), r.ray.dir_x = static_cast<float>(direction.x);
+  r.ray.dir_y = static_cast<float>(direction.y), r.ray.dir_z = static_cast<float>(direction.z);
+  r.ray.tnear = near_t, r.ray.tfar = far_t, r.ray.mask = ~0u;
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return r;
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+  Device device;
+  Surfaces opaque, glass;
+  std::vector<Spectrum> glass_share;  ///< by primitive of `glass`
+  double diameter = 0;
+
+  /// Product of the transmittances of the glass met before `length`.
+  Spectrum through_glass(const Vec3& origin, const Vec3& direction, double length) const {
+    Spectrum share(1.0);
+    auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    const float far_t = static_cast<float>(length), step = static_cast<float>(1e-6 * diameter);
+    for (float near_t = 0; near_t < far_t;) {
+      RTCRayHit r = ray_hit(origin, direction, near_t, far_t);
+      rtcIntersect1(glass.handle, &c, &r);
+      if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
+      share *= glass_share[r.hit.primID];
+      near_t = std::max(r.ray.tfar + step, std::nextafter(r.ray.tfar, kInfinity));  // panes count once at shared edges
+    }
+    return share;
+  }
+};
+
+RayScene::RayScene(const PatchSet& patches) : impl_(std::make_unique<Impl>()) {
+  Vec3 lower(kInfinity, kInfinity, kInfinity), upper(-kInfinity, -kInfinity, -kInfinity);
+  for (const Vec3& v : patches.vertices) {
+    lower = {std::min(lower.x, v.x), std::min(lower.y, v.y), std::min(lower.z, v.z)};
+    upper = {std::max(upper.x, v.x), std::max(upper.y, v.y), std::max(upper.z, v.z)};
+  }
+  impl_->diameter = patches.vertices.empty() ? 0 : length(upper - lower);
+  impl_->opaque.build(impl_->device.handle, patches, false);
+  impl_->glass.build(impl_->device.handle, patches, true);
+  for (const std::uint32_t t : impl_->glass.of_primitive)
+    impl_->glass_share.push_back(patches.materials[patches.side_material[t][kFront]].transmittance);
+}
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayScene::~RayScene() = default;
+
+bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
+double RayScene::lift() const { return 5e-7 * impl_->diameter; }
+double RayScene::diameter() const { return impl_->diameter; }
+
+void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const {
+  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  alignas(64) int valid[16];
+  RTCRayHit16 packet;
+  for (std::size_t first = 0; first < rays.size(); first += 16) {
+    const std::size_t count = std::min<std::size_t>(16, rays.size() - first);
+    for (std::size_t k = 0; k < 16; ++k) {
+      valid[k] = k < count ? -1 : 0;
+      const Ray& ray = rays[first + std::min(k, count - 1)];
+      packet.ray.org_x[k] = static_cast<float>(ray.origin.x), packet.ray.org_y[k] = static_cast<float>(ray.origin.y);
+      packet.ray.org_z[k] = static_cast<float>(ray.origin.z), packet.ray.dir_x[k] = static_cast<float>(ray.direction.x);
+      packet.ray.dir_y[k] = static_cast<float>(ray.direction.y);
+      packet.ray.dir_z[k] = static_cast<float>(ray.direction.z);
+      packet.ray.tnear[k] = 0, packet.ray.tfar[k] = kInfinity, packet.ray.time[k] = 0;
+      packet.ray.mask[k] = ~0u, packet.ray.id[k] = 0, packet.ray.flags[k] = 0;
+      packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect16(valid, impl_->opaque.handle, &c, &packet);
+    for (std::size_t k = 0; k < count; ++k) {
+      Hit& hit = hits[first + k];
+      hit = Hit{};
+      hit.distance = packet.ray.tfar[k];
+      if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
+        hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
+        const float along = packet.hit.Ng_x[k] * packet.ray.dir_x[k] + packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
+                            packet.hit.Ng_z[k] * packet.ray.dir_z[k];
+        hit.patch = patches.side_patch[hit.triangle][along < 0 ? kFront : kBack];
+      }
+      if (has_glass()) {
+        const Ray& ray = rays[first + k];
+        hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
+      }
+    }
+  }
+}
+
+Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray) const {
+  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
+  rtcIntersect1(impl_->opaque.handle, &c, &r);
+  Hit hit;
+  hit.distance = r.ray.tfar;
+  if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
+    hit.triangle = TriangleId{impl_->opaque.of_primitive[r.hit.primID]};
+    const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
+    hit.patch = patches.side_patch[hit.triangle][along < 0 ? kFront : kBack];
+  }
+  if (has_glass()) hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
+  return hit;
+}
+
+std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) const {
+  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  alignas(64) int valid[16];
+  RTCRay16 packet;
+  for (std::size_t k = 0; k < 16; ++k) {
+    valid[k] = (active >> k) & 1 ? -1 : 0;
+    packet.org_x[k] = s.from_x[k], packet.org_y[k] = s.from_y[k], packet.org_z[k] = s.from_z[k];
+    packet.dir_x[k] = s.to_x[k] - s.from_x[k], packet.dir_y[k] = s.to_y[k] - s.from_y[k];
+    packet.dir_z[k] = s.to_z[k] - s.from_z[k];
+    packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
+    packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
+  }
+  rtcOccluded16(valid, impl_->opaque.handle, &c, &packet);
+  unsigned visible = 0;
+  for (unsigned k = 0; k < 16; ++k) visible |= (packet.tfar[k] >= 0 ? 1u : 0u) << k;
+  return static_cast<std::uint16_t>(visible & active);
+}
+
+Spectrum RayScene::transmittance(const Vec3& from, const Vec3& to) const {
+  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  RTCRayHit r = ray_hit(from, to - from, 0, 1);
+  rtcOccluded1(impl_->opaque.handle, &c, &r.ray);
+  if (r.ray.tfar < 0) return Spectrum(0.0);
+  return has_glass() ? glass_transmittance(from, to) : Spectrum(1.0);
+}
+
+Spectrum RayScene::glass_transmittance(const Vec3& from, const Vec3& to) const {
+  if (!has_glass()) return Spectrum(1.0);
+  const double distance = length(to - from);
+  return distance > 0 ? impl_->through_glass(from, (to - from) / distance, distance) : Spectrum(1.0);
+}
+
+}  // namespace clerestory

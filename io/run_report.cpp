@@ -1,0 +1,123 @@
+#include "io/run_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+
+namespace clerestory {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+long long count(std::size_t n) { return static_cast<long long>(n); }
+
+void add_mesh_figures(std::vector<Figure>& out, const MeshReport& r) {
+  const auto add = [&](const char* name, auto value) { out.push_back({std::string("repairs.") + name, value}); };
+  add("input_faces", count(r.input_faces));
+  add("input_triangles", count(r.input_triangles));
+  add("welded_vertices", count(r.welded_vertices));
+  add("non_finite_faces", count(r.non_finite_faces));
+  add("degenerate_faces", count(r.degenerate_faces));
+  add("duplicate_faces", count(r.duplicate_faces));
+  add("opposite_faces", count(r.opposite_faces));
+  add("overlapping_regions", count(r.overlapping_regions));
+  add("t_junctions", count(r.t_junctions));
+  add("imprinted_contacts", count(r.imprinted_contacts));
+  add("non_manifold_edges", count(r.non_manifold_edges));
+  add("boundary_edges", count(r.boundary_edges));
+  add("planar_regions", count(r.planar_regions));
+  add("max_element", r.max_element);
+  add("longest_edge", r.longest_edge);
+  add("shortest_edge", r.shortest_edge);
+  add("worst_angle_deg", r.worst_angle_deg);
+  add("median_angle_deg", r.median_angle_deg);
+}
+
+void add_error_figures(std::vector<Figure>& out, const std::string& group,
+                       const std::optional<RunReport::ErrorFigures>& error) {
+  if (!error) return;
+  out.push_back({group + ".rms_relative", error->rms_relative});
+  out.push_back({group + ".p95_relative", error->p95_relative});
+  out.push_back({group + ".samples", count(error->samples)});
+  out.push_back({group + ".confidence", error->confidence});
+}
+
+std::vector<Figure> run_figures(const RunReport& r) {
+  const auto& s = r.seconds;
+  return {{"settings.threads", static_cast<long long>(r.threads)},
+          {"seconds.read", s.read},
+          {"seconds.mesh", s.mesh},
+          {"seconds.build", s.build},
+          {"seconds.direct", s.direct},
+          {"seconds.refine", s.refine},
+          {"seconds.gather", s.gather},
+          {"seconds.reconstruct", s.reconstruct},
+          {"seconds.measure", s.measure},
+          {"seconds.write", s.write},
+          {"seconds.total", s.total},
+          {"peak_memory_bytes", count(r.peak_memory_bytes)}};
+}
+
+/// Sets the value at the place its dotted name says.
+void set(Json& json, const Figure& figure) {
+  Json* place = &json;
+  std::size_t begin = 0;
+  for (std::size_t dot; (dot = figure.name.find('.', begin)) != std::string::npos; begin = dot + 1)
+    place = &(*place)[figure.name.substr(begin, dot - begin)];
+  std::visit([&](const auto& value) { (*place)[figure.name.substr(begin)] = value; }, figure.value);
+}
+
+}  // namespace
+
+std::string stop_name(StopReason stop) {
+  switch (stop) {
+    case StopReason::converged:
+      return "converged";
+    case StopReason::time_limit:
+      return "time-limit";
+    case StopReason::interrupted:
+      return "interrupted";
+    case StopReason::iteration_limit:
+      return "iteration-limit";
+  }
+  return "unknown";
+}
+
+std::vector<Figure> repeatable_figures(const RunReport& r) {
+  std::vector<Figure> out = {{"version", r.version}, {"input", r.input}, {"method", r.method}};
+  for (const Figure& setting : r.settings) out.push_back({"settings." + setting.name, setting.value});
+  const auto& c = r.counts;
+  out.insert(out.end(), {{"counts.triangles", count(c.triangles)},
+                         {"counts.elements", count(c.elements)},
+                         {"counts.clusters", count(c.clusters)},
+                         {"counts.links", count(c.links)},
+                         {"counts.rays", count(c.rays)},
+                         {"counts.points", count(c.points)},
+                         {"counts.sensors", count(c.sensors)},
+                         {"counts.dark_sides", count(c.dark_sides)},
+                         {"iterations", static_cast<long long>(r.iterations)},
+                         {"residual", r.residual},
+                         {"stop", stop_name(r.stop)},
+                         {"energy.emitted", r.energy.emitted},
+                         {"energy.absorbed", r.energy.absorbed},
+                         {"energy.escaped", r.energy.escaped},
+                         {"energy.unshot", r.energy.unshot},
+                         {"energy.imbalance", r.energy.imbalance()}});
+  add_error_figures(out, "error", r.error);
+  add_error_figures(out, "error_sensors", r.error_sensors);
+  add_mesh_figures(out, r.repairs);
+  return out;
+}
+
+void write_report(const std::filesystem::path& file, const RunReport& report) {
+  Json json;
+  for (const Figure& figure : repeatable_figures(report)) set(json, figure);
+  for (const Figure& figure : run_figures(report)) set(json, figure);
+  if (!report.error) json["error"] = nullptr;  // asked for by readers even when there was no time to measure
+  json["warnings"] = report.warnings;
+  json["left_out"] = report.left_out;
+  // Names from models may hold bytes that are no UTF-8; they must not stop the report.
+  write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace clerestory

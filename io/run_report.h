@@ -1,0 +1,61 @@
+#pragma once
+// What a run did, for people and scripts: the --report file, and the field data of a result.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "solver/model/mesh_report.h"
+#include "solver/model/solution.h"
+
+namespace clerestory {
+
+/// One named value of a report. Dots in the name are levels of the JSON file: "energy.emitted".
+struct Figure {
+  std::string name;
+  std::variant<bool, long long, double, std::string> value;
+};
+
+struct RunReport {
+  std::string version, input, method;
+  std::vector<Figure> settings;  ///< every setting in force that the result depends on
+  int threads = 0;               ///< no result depends on it
+  struct Counts {
+    std::size_t triangles = 0;   ///< of the mesh, each with two sides
+    std::size_t elements = 0;    ///< sides that take part
+    std::size_t dark_sides = 0;  ///< sides left out because no light can reach them
+    std::size_t points = 0, clusters = 0, links = 0, sensors = 0;
+    unsigned long long rays = 0;
+  } counts;
+  struct Seconds {
+    double read = 0, mesh = 0, build = 0, direct = 0, refine = 0, gather = 0, reconstruct = 0, measure = 0, write = 0,
+           total = 0;
+  } seconds;
+  std::size_t peak_memory_bytes = 0;
+  long iterations = 0;
+  double residual = 0;  ///< [1]
+  EnergyBalance energy;
+  struct ErrorFigures {
+    double rms_relative = 0, p95_relative = 0;  ///< [1]
+    std::size_t samples = 0;
+    double confidence = 0;  ///< half-width of the 95 % interval of rms_relative
+  };
+  std::optional<ErrorFigures> error, error_sensors;  ///< empty when not measured
+  StopReason stop = StopReason::converged;
+  MeshReport repairs;
+  std::vector<std::string> warnings;
+  std::vector<std::string> left_out;  ///< what the scene did not need, so was not computed
+};
+
+/// "converged", "time-limit", "interrupted" or "iteration-limit".
+std::string stop_name(StopReason stop);
+
+/// The figures that are the same for every run with these settings: no times, no memory, no thread count.
+std::vector<Figure> repeatable_figures(const RunReport& report);
+
+/// Writes the report as JSON, atomically.
+void write_report(const std::filesystem::path& file, const RunReport& report);
+
+}  // namespace clerestory

@@ -1,0 +1,208 @@
+#include "io/write_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkStringArray.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include "io/atomic_file.h"
+#include "solver/model/error.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+vtkIdType id(std::size_t i) { return static_cast<vtkIdType>(i); }
+
+/// The last door before the file: a NaN here is our own mistake and must not reach a user's picture.
+float to_float(double value, const char* array, std::size_t i) {
+  if (!(std::abs(value) <= std::numeric_limits<float>::max()))
+    throw std::runtime_error(std::string(array) + "[" + std::to_string(i) + "] = " + std::to_string(value) +
+                             " is not a number a result can hold");
+  return static_cast<float>(value);
+}
+
+void add_field(vtkFieldData* to, const char* name, const Field& field) {
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(field.channels);
+  array->SetNumberOfTuples(id(field.size()));
+  for (std::size_t i = 0; i < field.value.size(); ++i) array->SetValue(id(i), to_float(field.value[i], name, i));
+  to->AddArray(array);
+}
+
+template <class Value>
+void add_values(vtkFieldData* to, const char* name, std::size_t n, const Value& value) {
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(id(n));
+  for (std::size_t i = 0; i < n; ++i) array->SetValue(id(i), to_float(value(i), name, i));
+  to->AddArray(array);
+}
+
+template <class Value>
+void add_indices(vtkFieldData* to, const char* name, std::size_t n, const Value& value) {
+  vtkNew<vtkIntArray> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(id(n));
+  for (std::size_t i = 0; i < n; ++i) array->SetValue(id(i), static_cast<int>(value(i)));
+  to->AddArray(array);
+}
+
+/// The arrays that cells and points have in common.
+void add_light(vtkFieldData* to, const Field& E, const Field& B, std::optional<double> daylight_reference) {
+  add_field(to, "irradiance", E);
+  add_values(to, "illuminance", E.size(), [&](std::size_t i) { return photometric(E[i]); });
+  add_field(to, "radiosity", B);
+  add_values(to, "luminance", B.size(), [&](std::size_t i) { return luminance_of_radiosity(B[i]); });
+  if (daylight_reference)
+    add_values(to, "daylight_factor", E.size(),
+               [&](std::size_t i) { return 100 * photometric(E[i]) / *daylight_reference; });
+}
+
+Field radiosity_at_points(const PatchSet& patches, const VertexLightmap& lightmap) {
+  Field B(lightmap.position.size(), lightmap.E.channels);
+  for (std::size_t i = 0; i < B.size(); ++i) {
+    const std::size_t p = lightmap.patch_of_point[i];
+    B.set(i, patches.M[p] + patches.rho[p] * lightmap.E[i]);
+  }
+  return B;
+}
+
+void add_names(vtkFieldData* to, const char* name, std::size_t n, const auto& value) {
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  for (std::size_t i = 0; i < n; ++i) array->InsertNextValue(value(i));
+  to->AddArray(array);
+}
+
+void add_figure(vtkFieldData* to, const Figure& figure) {
+  const auto add = [&](auto array, auto value) {
+    array->SetName(figure.name.c_str());
+    array->InsertNextValue(value);
+    to->AddArray(array);
+  };
+  if (const auto* text = std::get_if<std::string>(&figure.value)) add(vtkNew<vtkStringArray>().Get(), text->c_str());
+  if (const auto* real = std::get_if<double>(&figure.value)) add(vtkNew<vtkDoubleArray>().Get(), *real);
+  if (const auto* whole = std::get_if<long long>(&figure.value)) add(vtkNew<vtkTypeInt64Array>().Get(), *whole);
+  if (const auto* flag = std::get_if<bool>(&figure.value)) add(vtkNew<vtkIntArray>().Get(), *flag ? 1 : 0);
+}
+
+void add_field_data(vtkPolyData* data, const PatchSet& patches, const RunReport& report) {
+  vtkFieldData* to = data->GetFieldData();
+  for (const Figure& figure : repeatable_figures(report)) add_figure(to, figure);
+  add_names(to, "material_names", patches.materials.size(), [&](std::size_t i) { return patches.materials[i].name; });
+  add_names(to, "surface_names", patches.surfaces.size(), [&](std::size_t i) { return patches.surfaces[i]; });
+}
+
+void add_indices_of_patches(vtkFieldData* to, const PatchSet& patches) {
+  const std::size_t n = patches.patch_count();
+  add_indices(to, "material", n, [&](std::size_t i) { return patches.material(PatchId{i}).value; });
+  add_indices(to, "surface", n, [&](std::size_t i) { return patches.surface(PatchId{i}).value; });
+  add_values(to, "area", n, [&](std::size_t i) { return patches.area[i]; });
+}
+
+/// Double, because georeferenced models lie 1e6 m from the origin.
+void set_points(vtkPolyData* data, const std::vector<Vec3>& local, const Vec3& origin) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(id(local.size()));
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    const Vec3 p = local[i] + origin;
+    points->SetPoint(id(i), p.x, p.y, p.z);
+  }
+  data->SetPoints(points);
+}
+
+void add_triangle(vtkCellArray* cells, std::size_t a, std::size_t b, std::size_t c) {
+  const vtkIdType corners[3] = {id(a), id(b), id(c)};
+  cells->InsertNextCell(3, corners);
+}
+
+void write(const std::filesystem::path& destination, vtkPolyData* data) {
+  AtomicFile file(destination);
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetFileName(file.path().c_str());
+  writer->SetInputData(data);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(1);  // 6 halves the speed and saves 3 % on float fields
+  if (writer->Write() == 0 || writer->GetErrorCode() != 0)
+    throw InputError(destination.string() + ": could not be written; is the disk full?");
+  file.commit();
+}
+
+struct Quality {
+  double min_angle_deg, aspect, longest_edge;
+};
+
+Quality quality(const std::array<Vec3, 3>& p, double area) {
+  const double a = length(p[1] - p[2]), b = length(p[2] - p[0]), c = length(p[0] - p[1]);
+  const double longest = std::max({a, b, c}), shortest = std::min({a, b, c}), middle = a + b + c - longest - shortest;
+  // The smallest angle lies between the two longer edges: sin = 2 A / (product of those).
+  const double sine = std::min(1.0, 2 * area / (longest * middle));
+  return {std::asin(sine) * 180 / std::numbers::pi, longest * longest / (2 * area), longest};
+}
+
+}  // namespace
+
+void write_result(const std::filesystem::path& file, const PatchSet& patches, const VertexLightmap& lightmap,
+                  const Solution& solution, std::optional<double> daylight_reference, const RunReport& report) {
+  vtkNew<vtkPolyData> data;
+  set_points(data, lightmap.position, patches.origin);
+  vtkNew<vtkCellArray> cells;
+  for (const auto& c : lightmap.corners) add_triangle(cells, c[0], c[1], c[2]);
+  data->SetPolys(cells);
+
+  add_light(data->GetCellData(), solution.E, solution.B, daylight_reference);
+  if (!solution.std_error.value.empty()) add_field(data->GetCellData(), "irradiance_std_error", solution.std_error);
+  add_indices_of_patches(data->GetCellData(), patches);
+  add_indices(data->GetCellData(), "level", patches.patch_count(), [](std::size_t) { return 0; });
+  add_light(data->GetPointData(), lightmap.E, radiosity_at_points(patches, lightmap), daylight_reference);
+  add_field_data(data, patches, report);
+  data->GetCellData()->SetActiveScalars("illuminance");
+  data->GetPointData()->SetActiveScalars("illuminance");
+  write(file, data);
+}
+
+void write_patches(const std::filesystem::path& file, const PatchSet& patches, const RunReport& report) {
+  vtkNew<vtkPolyData> data;
+  set_points(data, patches.vertices, patches.origin);
+  vtkNew<vtkCellArray> cells;
+  const std::size_t n = patches.patch_count();
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& c = patches.corners[patches.triangle[i]];
+    const bool front = patches.side[i] == kFront;
+    add_triangle(cells, c[0], front ? c[1] : c[2], front ? c[2] : c[1]);
+  }
+  data->SetPolys(cells);
+
+  vtkCellData* to = data->GetCellData();
+  const auto of_patch = [&](std::size_t i) { return quality(patches.corner_positions(PatchId{i}), patches.area[i]); };
+  add_values(to, "min_angle", n, [&](std::size_t i) { return of_patch(i).min_angle_deg; });
+  add_values(to, "aspect", n, [&](std::size_t i) { return of_patch(i).aspect; });
+  add_values(to, "longest_edge", n, [&](std::size_t i) { return of_patch(i).longest_edge; });
+  add_indices_of_patches(to, patches);
+  add_field_data(data, patches, report);
+  to->SetActiveScalars("min_angle");
+  write(file, data);
+}
+
+}  // namespace clerestory

@@ -1,0 +1,40 @@
+#include "io/write_sensors.h"
+
+#include <charconv>
+#include <string>
+
+#include "io/atomic_file.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+void append(std::string& row, double value) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  row.append(digits, end);
+}
+
+}  // namespace
+
+void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E) {
+  std::string text = "x,y,z,nx,ny,nz,illuminance";
+  for (int k = 0; k < E.channels; ++k) text += ",irradiance_" + std::to_string(k);
+  text += '\n';
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [p, n] = points[i];
+    for (const double value : {p.x, p.y, p.z, n.x, n.y, n.z}) {
+      append(text, value);
+      text += ',';
+    }
+    append(text, photometric(E[i]));
+    for (int k = 0; k < E.channels; ++k) {
+      text += ',';
+      append(text, E.at(i, k));
+    }
+    text += '\n';
+  }
+  write_file(file, text);
+}
+
+}  // namespace clerestory

@@ -1,0 +1,16 @@
+#pragma once
+// Sensor points and what arrives at them -> CSV.
+
+#include <filesystem>
+#include <span>
+
+#include "solver/model/channels.h"
+#include "solver/model/sensors.h"
+
+namespace clerestory {
+
+/// One row a point, in the order given: x,y,z,nx,ny,nz,illuminance [lx],irradiance_0[,irradiance_1,irradiance_2]
+/// [W/m2], each the shortest decimal that reads back as the same number. Written atomically.
+void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E);
+
+}  // namespace clerestory

@@ -13,16 +13,17 @@ namespace clerestory {
 /// Point source of equal intensity in all directions.
 struct PointLuminaire {
   std::string name;
-  Vec3 position;   ///< [m]
-  Spectrum power;  ///< total flux [W]
+  Vec3 position;        ///< [m]
+  Spectrum power;       ///< total flux [W]
+  std::string group{};  ///< luminaires that are switched and dimmed together; may be empty
 };
 
 /// glTF KHR_lights_punctual spot: intensity falls smoothly from the inner to the outer half-angle.
 struct SpotLuminaire {
   std::string name;
-  Vec3 position;         ///< [m]
-  Vec3 direction;        ///< unit, away from the lamp
-  Spectrum intensity;    ///< on the axis [W/sr]
+  Vec3 position;                            ///< [m]
+  Vec3 direction;                           ///< unit, away from the lamp
+  Spectrum intensity;                       ///< on the axis [W/sr]
   double inner_angle = 0, outer_angle = 0;  ///< half-angles [rad]
 };
 
@@ -37,8 +38,8 @@ struct Sky {
 
 /// Sun: a disc of 0.533 degrees of uniform radiance.
 struct Sun {
-  Vec3 direction;               ///< unit, to the sun
-  Spectrum normal_irradiance;   ///< on a plane that faces the sun [W/m2]
+  Vec3 direction;              ///< unit, to the sun
+  Spectrum normal_irradiance;  ///< on a plane that faces the sun [W/m2]
 };
 
 struct Lights {

@@ -19,6 +19,7 @@ struct Material {
   std::optional<Spectrum> total_power;  ///< [W] shared over the sides that carry the material; replaces exitance
   int sides = 2;                        ///< 1: the back (wound clockwise) is black and does not emit
 
+  friend bool operator==(const Material&, const Material&) = default;
   bool emits() const { return total_power ? !total_power->is_black() : !exitance.is_black(); }
 };
 

@@ -1,0 +1,42 @@
+#include "io/input_file.h"
+
+#include <fstream>
+
+#include "io/text.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+
+std::string short_name(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return name.empty() ? file.string() : name;
+}
+
+void check_input_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) throw InputError(text(file.string(), ": no such file"));
+  if (error) throw InputError(text(file.string(), ": cannot be read: ", error.message()));
+  if (fs::is_directory(status)) throw InputError(text(file.string(), ": is a folder; name a file in it"));
+  if (!fs::is_regular_file(status)) throw InputError(text(file.string(), ": is not a regular file"));
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (error) throw InputError(text(file.string(), ": cannot be read: ", error.message()));
+  if (bytes == 0) throw InputError(text(file.string(), ": the file is empty"));
+  if (bytes > max_bytes) {
+    throw InputError(text(file.string(), ": has ", bytes, " bytes; at most ", max_bytes, " are read from such a file"));
+  }
+}
+
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
+  check_input_file(file, max_bytes);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(text(file.string(), ": cannot be opened; check its permissions"));
+  std::string bytes(static_cast<std::size_t>(std::filesystem::file_size(file)), '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (in.gcount() <= 0) throw InputError(text(file.string(), ": cannot be read"));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,19 @@
+#pragma once
+// The bytes of a file, or a clear reason why not.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace clerestory {
+
+/// Name by which messages call a file: the last part of its path.
+std::string short_name(const std::filesystem::path& file);
+
+/// throws  InputError when `file` is missing, not a regular file, not readable, empty or longer than max_bytes.
+void check_input_file(const std::filesystem::path& file, std::uintmax_t max_bytes);
+
+/// The whole file. Throws as check_input_file does.
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t max_bytes);
+
+}  // namespace clerestory

@@ -1,0 +1,179 @@
+#include "io/scene_file/light_entries.h"
+
+#include <algorithm>
+
+#include "io/scene_file/nearest_name.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+constexpr double kDefaultSkyLux = 10'000;  // a usual overcast sky; the daylight factor does not depend on it
+
+constexpr std::string_view kSkies[] = {"uniform", "cie-overcast", "cie-clear", "cie-general", "perez"};
+
+/// place   "office.json: sky.model", or "--sky".
+SkyModel sky_model(const std::string& name, const std::string& place) {
+  if (name == "uniform") return SkyModel::uniform;
+  if (name == "cie-overcast") return SkyModel::cie_overcast;
+  if (std::find(std::begin(kSkies), std::end(kSkies), name) == std::end(kSkies)) {
+    throw InputError(text(place, " '", quotable(name), "' is not known; ", suggestion(name, kSkies)));
+  }
+  throw InputError(text(place, " '", name,
+                        "' is not available in this version; use 'uniform' or 'cie-overcast', and \"sun\" ",
+                        "for direct light"));
+}
+
+PointLuminaire read_luminaire(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
+  if (object.has("file")) {
+    throw InputError(text(object.place("file"), " '", quotable(object.word("file").value_or("")),
+                          "': luminaire files are not available in this version; use \"type\": \"point\" with its ",
+                          "luminous_flux"));
+  }
+  constexpr std::string_view kTypes[] = {"point"};
+  if (!object.choice("type", kTypes))
+    throw InputError(text(object.place("type"), " is missing; use \"type\": \"point\""));
+  PointLuminaire luminaire;
+  luminaire.name = object.word("name").value_or("");
+  luminaire.group = object.word("group").value_or("");
+  object.at("position");
+  luminaire.position = *object.vector("position");
+  constexpr Range kFlux{.low = 0, .advice = "a lamp cannot emit less than nothing"};
+  const auto flux = object.colour("luminous_flux", kFlux);
+  const auto power = object.colour("power", kFlux);
+  if (flux && power) {
+    throw InputError(text(object.where(), ": luminous_flux and power both say what it emits; keep one of them"));
+  }
+  if (!flux && !power)
+    throw InputError(text(object.place("luminous_flux"), " is missing; a lamp needs its flux in lumens"));
+  channels.note(flux ? *flux : *power, object.place(flux ? "luminous_flux" : "power"));
+  luminaire.power = flux ? flux->value / kWhiteEfficacy : power->value;
+  luminaire.power *= object.number("dimming", kNotNegative).value_or(1);
+  if (object.unit_vector("aim") || object.number("rotation")) {
+    warnings.push_back(
+        text(object.where(), ": aim and rotation are not used: a point shines the same in all directions"));
+  }
+  return luminaire;
+}
+
+Sky read_sky(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
+  Sky sky;
+  const std::string name = object.word("model").value_or("cie-overcast");
+  sky.model = sky_model(name, object.place("model"));
+  if (!object.has("model")) warnings.push_back(text(object.place("model"), " is not given; cie-overcast is taken"));
+  constexpr Range kLux{.low = 0, .advice = "a sky cannot give less than no light"};
+  if (const auto lux = object.colour("horizontal_illuminance", kLux)) {
+    channels.note(*lux, object.place("horizontal_illuminance"));
+    sky.horizontal_irradiance = lux->value / kWhiteEfficacy;
+  } else {
+    sky.horizontal_irradiance = Spectrum(kDefaultSkyLux / kWhiteEfficacy);
+    warnings.push_back(text(object.place("horizontal_illuminance"), " is not given; ", kDefaultSkyLux, " lx is taken"));
+  }
+  constexpr Range kGround{.low = 0, .high = 1, .advice = "the ground cannot reflect more than it receives"};
+  sky.ground_reflectance = object.number("ground_reflectance", kGround).value_or(sky.ground_reflectance);
+
+  object.number("type", {.low = 1, .high = 15, .advice = "the CIE numbers its general skies 1 to 15"});
+  object.number("direct_normal", kNotNegative);
+  object.number("diffuse_horizontal", kNotNegative);
+  object.word("weather");
+  for (const std::string_view key : {"type", "direct_normal", "diffuse_horizontal", "weather"}) {
+    if (object.has(key)) warnings.push_back(text(object.place(key), " is not used by the sky ", name));
+  }
+  return sky;
+}
+
+Sun read_sun(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
+  if (!object.has("direction")) {
+    throw InputError(text(object.place("direction"),
+                          " is missing; the sun of a place and time is not available in this ",
+                          "version, so give the direction to the sun, [0.3, -0.5, 0.8]"));
+  }
+  Sun sun;
+  sun.direction = *object.unit_vector("direction");
+  constexpr Range kLux{.low = 0, .advice = "a sun cannot give less than no light"};
+  object.at("normal_illuminance");
+  const JsonColour lux = *object.colour("normal_illuminance", kLux);
+  channels.note(lux, object.place("normal_illuminance"));
+  sun.normal_irradiance = lux.value / kWhiteEfficacy;
+  if (sun.direction.z <= 0) {
+    warnings.push_back(text(object.place("direction"), " points below the horizon; it is the direction to the sun"));
+  }
+  return sun;
+}
+
+/// Place and time are checked; nothing in this version computes from them.
+void check_place_and_time(const JsonObject& root, const std::string& file_name, std::vector<std::string>& warnings) {
+  if (root.has("location")) {
+    const JsonObject location(root.at("location"), file_name + ": location",
+                              {"latitude", "longitude", "timezone", "north"});
+    location.number("latitude", {.low = -90, .high = 90, .advice = "it is in degrees, north positive"});
+    location.number("longitude", {.low = -180, .high = 180, .advice = "it is in degrees, east positive"});
+    location.number("timezone", {.low = -14, .high = 14, .advice = "it is in hours ahead of UTC"});
+    location.number("north", {.low = -360, .high = 360, .advice = "it is in degrees clockwise from +y"});
+  }
+  const auto time = root.word("time");
+  if (time) {
+    // 2026-06-21T12:00, seconds allowed.
+    constexpr std::string_view kShape = "dddd-dd-ddTdd:dd:dd";
+    bool fits = time->size() == 16 || time->size() == 19;
+    for (std::size_t i = 0; fits && i < time->size(); ++i) {
+      const char c = (*time)[i];
+      fits = kShape[i] == 'd' ? c >= '0' && c <= '9' : c == kShape[i];
+    }
+    if (!fits) {
+      throw InputError(
+          text(root.place("time"), " '", quotable(*time), "' is not a time; write it as 2026-06-21T12:00"));
+    }
+  }
+  if (time || root.has("location")) {
+    warnings.push_back(file_name + ": location and time are not used: sky and sun are given as they are");
+  }
+}
+
+}  // namespace
+
+void read_light_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels, Lights& lights,
+                        std::vector<std::string>& warnings) {
+  if (root.has("luminaires")) {
+    std::size_t n = 0;
+    for (const Json& entry : as_array(root.at("luminaires"), root.place("luminaires"), "luminaires")) {
+      const JsonObject object(
+          entry, text(file_name, ": luminaires[", n++, "]"),
+          {"name", "type", "file", "position", "aim", "rotation", "luminous_flux", "power", "dimming", "group"});
+      lights.points.push_back(read_luminaire(object, channels, warnings));
+      if (lights.points.back().name.empty()) lights.points.back().name = text("luminaire ", n);
+    }
+  }
+  if (root.has("sky")) {
+    const JsonObject object(root.at("sky"), file_name + ": sky",
+                            {"model", "horizontal_illuminance", "type", "ground_reflectance", "direct_normal",
+                             "diffuse_horizontal", "weather"});
+    lights.sky = read_sky(object, channels, warnings);
+  }
+  if (root.has("sun")) {
+    const JsonObject object(root.at("sun"), file_name + ": sun", {"direction", "normal_illuminance"});
+    lights.suns.push_back(read_sun(object, channels, warnings));
+  }
+  check_place_and_time(root, file_name, warnings);
+}
+
+Sky sky_of_option(std::string_view option) {
+  const std::size_t colon = option.find(':');
+  Sky sky;
+  sky.model = sky_model(std::string(option.substr(0, colon)), "--sky");
+  double lux = kDefaultSkyLux;
+  if (colon != option.npos) {
+    const std::string_view number = option.substr(colon + 1);
+    lux = to_number(number).value_or(-1);
+    if (!kNotNegative.contains(lux)) {
+      throw InputError(
+          text("--sky: '", quotable(number), "' is not an illuminance in lux, [0, inf); write cie-overcast:10000"));
+    }
+  }
+  sky.horizontal_irradiance = Spectrum(lux / kWhiteEfficacy);
+  return sky;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,151 @@
+#include "io/scene_file/material_rules.h"
+
+#include <numbers>
+
+#include "io/scene_file/nearest_name.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+constexpr Range kReflectance{
+    .low = 0, .high = 1, .high_allowed = false, .advice = "a wall cannot reflect more than it receives"};
+constexpr Range kTransmittance{.low = 0, .high = 1, .advice = "a sheet cannot pass more than it receives"};
+constexpr Range kEmission{.low = 0, .advice = "a surface cannot emit less than nothing"};
+
+/// One way to say what a surface emits; `factor` turns it into W/m2, or W where `total`.
+struct Emission {
+  std::string_view key;
+  double factor;
+  bool total;
+};
+constexpr Emission kEmissions[] = {
+    {"exitance", 1, false},                                   // W/m2
+    {"luminous_exitance", 1 / kWhiteEfficacy, false},         // lm/m2
+    {"radiance", std::numbers::pi, false},                    // W/(m2 sr), the same in all directions
+    {"luminance", std::numbers::pi / kWhiteEfficacy, false},  // cd/m2
+    {"power", 1, true},                                       // W
+    {"luminous_flux", 1 / kWhiteEfficacy, true},              // lm
+};
+
+void read_emission(const JsonObject& object, Material& material, ChannelCount& channels) {
+  std::string_view given;
+  for (const Emission& emission : kEmissions) {
+    const auto colour = object.colour(emission.key, kEmission);
+    if (!colour) continue;
+    if (!given.empty()) {
+      throw InputError(
+          text(object.where(), ": ", given, " and ", emission.key, " both say what it emits; keep one of them"));
+    }
+    given = emission.key;
+    channels.note(*colour, object.place(emission.key));
+    if (emission.total) {
+      material.total_power = colour->value * emission.factor;
+    } else {
+      material.exitance = colour->value * emission.factor;
+    }
+  }
+}
+
+Material read_material(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
+  constexpr std::string_view kTypes[] = {"diffuse", "glass", "diffuser", "mirror"};
+  const std::string type = object.choice("type", kTypes).value_or("diffuse");
+  if (type == "diffuser" || type == "mirror") {
+    throw InputError(text(object.place("type"), " '", type, "' is not available in this version; use ",
+                          type == "mirror" ? "a diffuse material with the mirror's reflectance"
+                                           : "\"type\": \"glass\" with its transmittance"));
+  }
+  Material material;
+  material.reflectance = Spectrum(0.5);
+  if (const auto colour = object.colour("reflectance", kReflectance)) {
+    channels.note(*colour, object.place("reflectance"));
+    material.reflectance = colour->value;
+  }
+  const auto transmittance = object.colour("transmittance", kTransmittance);
+  if (transmittance) channels.note(*transmittance, object.place("transmittance"));
+  read_emission(object, material, channels);
+  if (const auto sides = object.number("sides", {.low = 1, .high = 2, .advice = "a surface has one lit side or two"})) {
+    if (*sides != 1 && *sides != 2) throw InputError(text(object.place("sides"), " = ", *sides, " is neither 1 nor 2"));
+    material.sides = static_cast<int>(*sides);
+  }
+  if (type == "glass") {
+    if (!transmittance) {
+      throw InputError(
+          text(object.place("transmittance"), " is missing; glass needs it, 0.65 for common double glazing"));
+    }
+    if (material.emits())
+      throw InputError(text(object.where(), ": glass does not emit; give the light to another surface"));
+    if (object.has("reflectance")) {
+      warnings.push_back(text(object.place("reflectance"), " is not used: glass reflects nothing in this version"));
+    }
+    material.kind = MaterialKind::glass;
+    material.transmittance = transmittance->value;
+  } else if (transmittance) {
+    throw InputError(text(object.place("transmittance"), " needs \"type\": \"glass\""));
+  }
+  return material;
+}
+
+}  // namespace
+
+void ChannelCount::note(const JsonColour& colour, const std::string& place) {
+  if (colour.array_length == 0) return;
+  if (length_ == 0) {
+    length_ = colour.array_length;
+    first_place_ = place;
+  } else if (length_ != colour.array_length) {
+    throw InputError(text(place, " has ", colour.array_length, colour.array_length == 1 ? " value" : " values",
+                          ", but ", first_place_.substr(first_place_.find(": ") + 2), " has ", length_,
+                          "; one channel and three channels mixed. A plain number goes with both"));
+  }
+}
+
+bool matches(std::string_view pattern, std::string_view name) {
+  // Greedy with one point of return, the last star: linear in practice, never exponential.
+  std::size_t p = 0, n = 0, star = pattern.npos, resume = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      resume = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p;
+      ++n;
+    } else if (star != pattern.npos) {
+      p = star + 1;
+      n = ++resume;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+std::vector<MaterialRule> read_material_rules(const Json& materials, const std::string& file_name,
+                                              ChannelCount& channels, std::vector<std::string>& warnings) {
+  if (!materials.is_object()) refuse_type(file_name + ": materials", "an object of name patterns", materials);
+  std::vector<MaterialRule> rules;
+  for (const auto& [pattern, value] : materials.items()) {
+    const JsonObject object(value, text(file_name, ": materials '", quotable(pattern), "'"),
+                            {"type", "reflectance", "transmittance", "sides", "exitance", "luminous_exitance",
+                             "radiance", "luminance", "power", "luminous_flux"},
+                            ": ");
+    rules.push_back({pattern, read_material(object, channels, warnings), {}});
+  }
+  return rules;
+}
+
+void apply_rules(std::vector<MaterialRule>& rules, Material& material) {
+  for (MaterialRule& rule : rules) {
+    if (!matches(rule.pattern, material.name)) continue;
+    rule.used.push_back(material.name);
+    const std::string name = material.name;
+    material = rule.material;
+    material.name = name;
+    return;
+  }
+}
+
+}  // namespace clerestory

@@ -1,0 +1,178 @@
+#include "io/scene_file/place_model.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "io/input_file.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+/// p -> A p + b, with A by rows.
+struct Affine {
+  std::array<Vec3, 3> A{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  Vec3 b;
+
+  Vec3 direction(const Vec3& d) const { return {dot(A[0], d), dot(A[1], d), dot(A[2], d)}; }
+  Vec3 point(const Vec3& p) const { return direction(p) + b; }
+  double determinant() const { return dot(A[0], cross(A[1], A[2])); }
+};
+
+/// First the unit, then the turn of (x, y, z) into (x, -z, y), then the transform.
+Affine to_scene(double metres, Up up, const std::optional<std::array<double, 16>>& transform) {
+  Affine file;
+  if (up == Up::y) file.A = {Vec3{1, 0, 0}, Vec3{0, 0, -1}, Vec3{0, 1, 0}};
+  for (Vec3& row : file.A) row *= metres;
+  if (!transform) return file;
+  const auto& t = *transform;
+  Affine placed;
+  for (std::size_t r = 0; r < 3; ++r) {
+    placed.A[r] = t[4 * r] * file.A[0] + t[4 * r + 1] * file.A[1] + t[4 * r + 2] * file.A[2];
+  }
+  placed.b = {t[3], t[7], t[11]};
+  return placed;
+}
+
+/// `name`, or where that is taken "name (stem)", "name (stem 2)" ...
+std::string unused_name(const std::string& name, const std::string& stem, const std::set<std::string>& taken) {
+  if (!taken.contains(name)) return name;
+  std::string candidate = text(name, " (", stem, ")");
+  for (int n = 2; taken.contains(candidate); ++n) candidate = text(name, " (", stem, " ", n, ")");
+  return candidate;
+}
+
+/// For each material of the model its id in the scene; one that is there already, the same in all it says, is shared.
+std::vector<MaterialId> add_materials(Scene& scene, Model& model, const std::string& stem,
+                                      const MaterialChange& change) {
+  std::vector<bool> carried(model.materials.size(), false);
+  for (const MaterialId m : model.polygons.material) carried[m] = true;
+  std::set<std::string> taken;
+  for (const Material& material : scene.materials) taken.insert(material.name);
+  const std::size_t before = scene.materials.size();
+  std::vector<MaterialId> id(model.materials.size());
+  for (std::size_t m = 0; m < model.materials.size(); ++m) {
+    if (!carried[m]) continue;
+    Material& material = model.materials[m];
+    change(material);
+    const auto end = scene.materials.begin() + static_cast<std::ptrdiff_t>(before);
+    const auto same = std::find(scene.materials.begin(), end, material);
+    if (same != end) {
+      id[m] = MaterialId(static_cast<std::size_t>(same - scene.materials.begin()));
+      continue;
+    }
+    material.name = unused_name(material.name, stem, taken);
+    taken.insert(material.name);
+    id[m] = MaterialId(scene.materials.size());
+    scene.materials.push_back(std::move(material));
+  }
+  return id;
+}
+
+std::vector<SurfaceId> add_surfaces(Scene& scene, const Model& model, const std::string& stem) {
+  std::set<std::string> taken(scene.surfaces.begin(), scene.surfaces.end());
+  std::vector<SurfaceId> id;
+  for (const std::string& name : model.surfaces) {
+    id.emplace_back(scene.surfaces.size());
+    scene.surfaces.push_back(unused_name(name, stem, taken));
+    taken.insert(scene.surfaces.back());
+  }
+  return id;
+}
+
+void add_lights(Scene& scene, const Lights& lights, const Affine& place) {
+  for (PointLuminaire point : lights.points) {
+    point.position = place.point(point.position);
+    scene.lights.points.push_back(std::move(point));
+  }
+  for (SpotLuminaire spot : lights.spots) {
+    spot.position = place.point(spot.position);
+    spot.direction = normalized(place.direction(spot.direction));
+    scene.lights.spots.push_back(std::move(spot));
+  }
+  for (Sun sun : lights.suns) {
+    sun.direction = normalized(place.direction(sun.direction));
+    scene.lights.suns.push_back(sun);
+  }
+}
+
+void warn_of_size(Scene& scene, const Vec3& size, bool unit_is_known, const std::string& name) {
+  const double largest = std::max({size.x, size.y, size.z});
+  const std::string extent = text(name, ": is ", size.x, " x ", size.y, " x ", size.z, " m large");
+  if (largest < 0.01) {
+    scene.warnings.push_back(text(extent, "; is its unit larger than assumed? Say so with \"unit\" (--unit)"));
+  } else if (largest > 10'000 || (!unit_is_known && largest > 500)) {
+    scene.warnings.push_back(text(extent, "; was it drawn in millimetres? Then say \"unit\": \"mm\" (--unit mm)"));
+  }
+}
+
+std::string words_of_unit(double metres) { return metres == 1 ? "metres" : text("units of ", metres, " m"); }
+
+}  // namespace
+
+std::optional<double> metres_of_unit(std::string_view unit) {
+  if (unit == "m") return 1.0;
+  if (unit == "cm") return 0.01;
+  if (unit == "mm") return 0.001;
+  if (unit == "ft") return 0.3048;
+  if (unit == "in") return 0.0254;
+  return std::nullopt;
+}
+
+void place_model(Scene& scene, Model model, const std::filesystem::path& file, const Placement& placement,
+                 const MaterialChange& change) {
+  const std::string name = short_name(file);
+  for (const std::string& warning : model.warnings) scene.warnings.push_back(name + ": " + warning);
+  if (model.metres_per_unit && placement.metres_per_unit &&
+      std::abs(*model.metres_per_unit / *placement.metres_per_unit - 1) > 1e-9) {
+    scene.warnings.push_back(text(name, ": the file itself says ", words_of_unit(*model.metres_per_unit),
+                                  "; the unit given for it is not used. To scale the model, use \"transform\""));
+  }
+  if (model.up && placement.up && *model.up != *placement.up) {
+    scene.warnings.push_back(text(name, ": the file itself says that ", *model.up == Up::y ? 'y' : 'z',
+                                  " is up; what was given for it is not used. To turn the model, use \"transform\""));
+  }
+  const double metres = model.metres_per_unit.value_or(placement.metres_per_unit.value_or(1.0));
+  const Affine place = to_scene(metres, model.up.value_or(placement.up.value_or(Up::z)), placement.transform);
+  const bool mirrored = place.determinant() < 0;
+
+  const std::string stem = file.stem().string();
+  const std::vector<MaterialId> material = add_materials(scene, model, stem, change);
+  const std::vector<SurfaceId> surface = add_surfaces(scene, model, stem);
+  add_lights(scene, model.lights, place);
+
+  const PolygonSoup& from = model.polygons;
+  PolygonSoup& to = scene.polygons;
+  if (to.vertices.size() + from.vertices.size() >= std::numeric_limits<std::uint32_t>::max() ||
+      to.corner.size() + from.corner.size() >= std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(text(name, ": more than 4 billion corners in one scene; leave out what light does not need"));
+  }
+  const auto first = static_cast<std::uint32_t>(to.vertices.size());
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 lower{kInfinity, kInfinity, kInfinity}, upper = -lower;
+  for (const Vec3& p : from.vertices) {
+    const Vec3 q = place.point(p);
+    to.add_vertex(q);
+    lower = {std::min(lower.x, q.x), std::min(lower.y, q.y), std::min(lower.z, q.z)};
+    upper = {std::max(upper.x, q.x), std::max(upper.y, q.y), std::max(upper.z, q.z)};
+  }
+  for (std::size_t f = 0; f < from.face_count(); ++f) {
+    const std::uint32_t begin = from.face_begin[f], end = from.face_begin[f + 1];
+    for (std::uint32_t c = begin; c < end; ++c) {
+      const std::uint32_t vertex = first + from.corner[mirrored ? end - 1 - (c - begin) : c];
+      const Vec3& p = to.vertices[vertex];
+      if (!is_finite(p) || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate) {
+        throw InputError(text(name, ": surface '", quotable(model.surfaces[from.surface[f]]), "' has a corner at (",
+                              p.x, ", ", p.y, ", ", p.z,
+                              "), outside [-1e12, 1e12] m; check the file, unit and transform"));
+      }
+      to.add_corner(vertex);
+    }
+    to.end_face(material[from.material[f]], surface[from.surface[f]]);
+  }
+  warn_of_size(scene, upper - lower, model.metres_per_unit || placement.metres_per_unit, name);
+}
+
+}  // namespace clerestory

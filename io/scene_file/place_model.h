@@ -1,0 +1,30 @@
+#pragma once
+// Model -> its place in the scene: metres, z up, names that no other file uses.
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "io/formats/model.h"
+
+namespace clerestory {
+
+/// How a model is put into the scene. What the file itself says of its unit and axes wins.
+struct Placement {
+  std::optional<double> metres_per_unit;
+  std::optional<Up> up;
+  std::optional<std::array<double, 16>> transform;  ///< row-major, of the scene's frame [m]; last row 0 0 0 1
+};
+
+/// Metres of "m", "cm", "mm", "ft" or "in"; nothing for other words.
+std::optional<double> metres_of_unit(std::string_view unit);
+
+/// What becomes of a model's material; called once for each that carries faces, before names are made unique.
+using MaterialChange = std::function<void(Material&)>;
+
+/// throws  InputError naming the surface whose coordinates leave the representable range.
+void place_model(Scene& scene, Model model, const std::filesystem::path& file, const Placement& placement,
+                 const MaterialChange& change);
+
+}  // namespace clerestory

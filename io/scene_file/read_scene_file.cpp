@@ -1,0 +1,138 @@
+#include "io/scene_file/read_scene_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "io/formats/model.h"
+#include "io/input_file.h"
+#include "io/scene_file/json_object.h"
+#include "io/scene_file/light_entries.h"
+#include "io/scene_file/material_rules.h"
+#include "io/scene_file/place_model.h"
+#include "io/scene_file/sensor_entries.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::uintmax_t kMaxBytes = 64u << 20;
+constexpr std::size_t kMaxGeometry = 10'000;
+constexpr std::size_t kMaxFaces = 100'000'000;  // a small file named often enough would fill the machine
+
+std::array<double, 16> read_transform(const JsonObject& object) {
+  const std::vector<double> values = *object.numbers("transform", 16);
+  const std::string place = object.place("transform");
+  std::array<double, 16> t{};
+  std::copy(values.begin(), values.end(), t.begin());
+  if (t[12] != 0 || t[13] != 0 || t[14] != 0 || t[15] != 1) {
+    const bool by_columns = t[3] == 0 && t[7] == 0 && t[11] == 0 && t[15] == 1;
+    throw InputError(
+        text(place, ": the last row is not 0, 0, 0, 1; ",
+             by_columns ? "the numbers go row by row, not column by column" : "only affine transforms are read"));
+  }
+  const Vec3 rows[3] = {{t[0], t[1], t[2]}, {t[4], t[5], t[6]}, {t[8], t[9], t[10]}};
+  const double size = length(rows[0]) * length(rows[1]) * length(rows[2]);
+  if (!(std::abs(dot(rows[0], cross(rows[1], rows[2]))) > 1e-12 * size)) {
+    throw InputError(place + ": flattens the model; its 3 x 3 part has no inverse");
+  }
+  return t;
+}
+
+void read_geometry(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
+                   std::vector<MaterialRule>& rules, Scene& scene) {
+  const Json& entries = as_array(root.at("geometry"), root.place("geometry"), "models");
+  if (entries.empty())
+    throw InputError(text(root.place("geometry"), " is empty; name a model: [{ \"file\": \"room.obj\" }]"));
+  if (entries.size() > kMaxGeometry)
+    throw InputError(text(root.place("geometry"), " has more than ", kMaxGeometry, " entries"));
+  std::map<std::filesystem::path, Model> read_before;
+  std::size_t n = 0;
+  for (const Json& entry : entries) {
+    const JsonObject object(entry, text(file_name, ": geometry[", n++, "]"), {"file", "unit", "up", "transform"});
+    Placement placement;
+    constexpr std::string_view kUnits[] = {"m", "cm", "mm", "ft", "in"};
+    constexpr std::string_view kUps[] = {"y", "z"};
+    if (const auto unit = object.choice("unit", kUnits)) placement.metres_per_unit = metres_of_unit(*unit);
+    if (const auto up = object.choice("up", kUps)) placement.up = *up == "y" ? Up::y : Up::z;
+    if (object.has("transform")) placement.transform = read_transform(object);
+    object.at("file");
+    const std::string model_name = *object.word("file");
+    const std::filesystem::path model_file = folder / model_name;
+    if (to_lower(model_file.extension().string()) == ".json") {
+      throw InputError(text(object.place("file"), " '", quotable(model_name), "' is a scene file; name a model"));
+    }
+    auto model = read_before.find(model_file);
+    if (model == read_before.end()) {
+      model = read_before.emplace(model_file, read_model(model_file)).first;
+    } else {
+      model->second.warnings.clear();  // said already
+    }
+    if (scene.polygons.face_count() + model->second.polygons.face_count() > kMaxFaces) {
+      throw InputError(text(object.where(), ": more than ", kMaxFaces, " faces in one scene"));
+    }
+    place_model(scene, model->second, model_file, placement, [&](Material& material) { apply_rules(rules, material); });
+  }
+}
+
+SolverSettings read_settings(const JsonObject& object) {
+  constexpr std::string_view kMethods[] = {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"};
+  constexpr std::string_view kAccuracies[] = {"draft", "standard", "fine"};
+  SolverSettings settings;
+  settings.method = object.choice("method", kMethods);
+  settings.accuracy = object.choice("accuracy", kAccuracies);
+  settings.max_element =
+      object.number("max_element", {.low = 0, .low_allowed = false, .advice = "it is an edge in metres"});
+  settings.target_error =
+      object.number("target_error", {.low = 0, .low_allowed = false, .advice = "it is relative: 0.02 is 2 %"});
+  settings.time_limit = object.number("time_limit", {.low = 0, .low_allowed = false, .advice = "it is in seconds"});
+  if (const auto seed =
+          object.number("seed", {.low = 0, .high = 9007199254740992.0, .advice = "it is a whole number"})) {
+    if (*seed != std::floor(*seed))
+      throw InputError(text(object.place("seed"), " = ", *seed, " is not a whole number"));
+    settings.seed = static_cast<std::uint64_t>(*seed);
+  }
+  return settings;
+}
+
+void report_rules(const std::vector<MaterialRule>& rules, const std::string& file_name, Scene& scene) {
+  for (const MaterialRule& rule : rules) {
+    std::vector<std::string> used = rule.used;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    if (used.empty()) scene.unused_materials.push_back(rule.pattern);
+    if (rule.material.total_power && used.size() > 1) {
+      scene.warnings.push_back(text(file_name, ": materials '", quotable(rule.pattern), "' matches ", used.size(),
+                                    " materials; each of them emits all of its flux"));
+    }
+  }
+}
+
+}  // namespace
+
+Scene read_scene_file(const std::filesystem::path& file) {
+  const std::string name = short_name(file);
+  const Json json = parse_json_file(read_input_file(file, kMaxBytes), name);
+  const JsonObject root(
+      json, name, {"geometry", "materials", "luminaires", "sky", "sun", "location", "time", "sensors", "solver"}, ": ");
+  Scene scene;
+  scene.file = file.string();
+  const std::filesystem::path folder = file.parent_path();
+  ChannelCount channels;
+  std::vector<MaterialRule> rules;
+  // What is quick to check comes first; models may take a while.
+  if (root.has("materials")) rules = read_material_rules(root.at("materials"), name, channels, scene.warnings);
+  read_light_entries(root, name, channels, scene.lights, scene.warnings);
+  if (root.has("solver")) {
+    scene.settings =
+        read_settings(JsonObject(root.at("solver"), name + ": solver",
+                                 {"method", "accuracy", "max_element", "target_error", "time_limit", "seed"}));
+  }
+  if (root.has("sensors")) scene.sensors = read_sensor_entries(root.at("sensors"), name, folder);
+  read_geometry(root, name, folder, rules, scene);
+  report_rules(rules, name, scene);
+  return scene;
+}
+
+}  // namespace clerestory

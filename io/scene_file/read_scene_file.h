@@ -1,0 +1,15 @@
+#pragma once
+// Scene JSON -> Scene.
+
+#include <filesystem>
+
+#include "solver/model/scene.h"
+
+namespace clerestory {
+
+/// Reads a scene file as INTERFACE.md describes it, and the models it names.
+///
+/// throws  InputError naming file and line, or the key, what is wrong and what is allowed.
+Scene read_scene_file(const std::filesystem::path& file);
+
+}  // namespace clerestory

@@ -1,0 +1,67 @@
+#include "io/scene_file/sensor_entries.h"
+
+#include <cmath>
+
+#include "io/read_sensors.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+/// Steps of `spacing` that fit into `length`; a length that is a whole multiple in decimal counts as one.
+double steps(double length, double spacing) { return std::floor(length / spacing * (1 + 1e-9) + 1e-9); }
+
+SensorSet read_grid(const JsonObject& object, std::size_t room_left) {
+  for (const std::string_view key : {"origin", "u", "v", "spacing"}) object.at(key);
+  const Vec3 origin = *object.vector("origin"), u = *object.vector("u"), v = *object.vector("v");
+  const double spacing = *object.number("spacing", kPositive);
+  Vec3 normal;
+  if (object.has("normal")) {
+    normal = *object.unit_vector("normal");
+  } else {
+    normal = normalized(cross(normalized(u), normalized(v)));
+    if (length(normal) == 0)
+      throw InputError(text(object.place("normal"), " is missing, and u and v span no plane to take it from"));
+  }
+  const double along_u = steps(length(u), spacing) + 1, along_v = steps(length(v), spacing) + 1;
+  if (!(along_u * along_v <= static_cast<double>(room_left))) {
+    throw InputError(text(object.place("spacing"), " = ", spacing, " makes ", along_u, " x ", along_v,
+                          " points; at most ", kMaxSensors, " in one scene"));
+  }
+  SensorSet sensors;
+  const Vec3 step_u = normalized(u) * spacing, step_v = normalized(v) * spacing;
+  for (int j = 0; j < static_cast<int>(along_v); ++j) {
+    for (int i = 0; i < static_cast<int>(along_u); ++i)
+      sensors.points.push_back({origin + step_u * i + step_v * j, normal});
+  }
+  return sensors;
+}
+
+}  // namespace
+
+std::vector<SensorSet> read_sensor_entries(const Json& sensors, const std::string& file_name,
+                                           const std::filesystem::path& folder) {
+  std::vector<SensorSet> sets;
+  std::size_t total = 0;
+  for (const Json& entry : as_array(sensors, file_name + ": sensors", "sensor sets")) {
+    const JsonObject object(entry, text(file_name, ": sensors[", sets.size(), "]"),
+                            {"name", "file", "origin", "u", "v", "spacing", "normal"});
+    if (object.has("file")) {
+      for (const std::string_view key : {"origin", "u", "v", "spacing", "normal"}) {
+        if (object.has(key)) throw InputError(text(object.place(key), " does not go with \"file\"; keep one of them"));
+      }
+      sets.push_back(read_sensors(folder / *object.word("file")));
+    } else {
+      sets.push_back(read_grid(object, kMaxSensors - total));
+    }
+    if (const auto name = object.word("name")) sets.back().name = *name;
+    if (sets.back().name.empty()) sets.back().name = text("sensors ", sets.size());
+    total += sets.back().points.size();
+    if (total > kMaxSensors)
+      throw InputError(text(object.where(), ": more than ", kMaxSensors, " points in one scene"));
+  }
+  return sets;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,30 @@
+#pragma once
+// Strings put together from values, for messages; and the few questions that readers ask of text.
+
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+namespace clerestory {
+
+/// text("x = ", 1.5) is "x = 1.5".
+template <class... Part>
+std::string text(const Part&... part) {
+  std::ostringstream out;
+  out.precision(9);
+  (out << ... << part);
+  return out.str();
+}
+
+std::string to_lower(std::string_view s);
+/// s without blanks at either end.
+std::string_view trimmed(std::string_view s);
+/// Next word of `rest`, which is moved behind it; empty at the end. Blanks and tabs separate.
+std::string_view next_word(std::string_view& rest);
+/// All of s as a number ("1e3", "-.5", "nan"); nothing when it is not one.
+std::optional<double> to_number(std::string_view s);
+/// s fit for a message: control and non-ASCII bytes replaced, cut when long.
+std::string quotable(std::string_view s);
+
+}  // namespace clerestory

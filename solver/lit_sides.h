@@ -2,20 +2,24 @@
 // Which sides light can reach at all.
 
 #include <cstdint>
+#include <vector>
 
 #include "solver/problem.h"
 
 namespace clerestory {
 
 struct LitSides {
-  std::vector<bool> wanted;       ///< 2T, for make_patches()
-  std::size_t dark_sides = 0;     ///< sides no light reaches: inside solids, outside of sealed rooms
-  std::size_t lamp_interiors = 0; ///< emitting sides that only see the inside of their own lamp
+  std::vector<bool> wanted;        ///< 2T, for make_patches()
+  std::size_t dark_sides = 0;      ///< sides no light reaches: inside solids, outside of sealed rooms
+  std::size_t lamp_interiors = 0;  ///< emitting sides that only see the inside of their own lamp body
 };
 
-/// Follows light over rays from the luminaires, sky, sun and emitting sides to every side they can reach in any number
-/// of bounces. An emitting side is dropped too when its light can meet no other surface (outside of a glowing room), or
-/// only the inside of the same lamp body.
+/// Follows light over rays from luminaires, sky, sun and emitting sides to every side it can reach in any number of
+/// bounces. Sides that see each other form a space; a space is dropped when no light gets in. An emitting side is
+/// dropped too when its light meets no other surface (the outside of a glowing room), or only the inside of the same
+/// lamp body while the body's outside lights a space with other surfaces.
+///
+/// problem  with all sides as patches, as build_patches() leaves them.
 LitSides find_lit_sides(const Problem& problem, std::uint64_t seed = 0);
 
 }  // namespace clerestory

@@ -29,6 +29,9 @@ struct SolveOptions {
 /// Triangles to aim for when no longest edge is given.
 double target_triangles(Accuracy accuracy);
 
+/// Paths from each patch or vertex by the method `path`; sensors get four times as many.
+int paths_per_point(const SolveOptions& options);
+
 /// Radiosity and irradiance of every patch.
 ///
 /// throws   InputError when the method needs more memory than there is.

@@ -25,7 +25,6 @@ struct Solution {
   Field E;          ///< N, mean irradiance of each patch, ambient included [W/m2]
   Field B;          ///< N, radiosity M + rho E [W/m2]
   Field std_error;  ///< N, standard error of E; empty unless the method is a random estimate of known error
-  Spectrum ambient; ///< irradiance added for light not yet shot [W/m2]
   EnergyBalance energy;
   StopReason stop = StopReason::converged;
   long iterations = 0;           ///< shots, sweeps or paths, as the method counts

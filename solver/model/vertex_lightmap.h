@@ -19,6 +19,7 @@ struct VertexLightmap {
   std::vector<Vec3> sample_position;                  ///< P, moved a little into the surface, off edges and contacts [m]
   std::vector<std::uint32_t> patch_of_point;          ///< P, one of the patches that share the point
   Field E;                                            ///< P, irradiance [W/m2]; filled after the solve
+  Field std_error;                                    ///< P, standard error of E; empty unless E is a random estimate
 };
 
 }  // namespace clerestory

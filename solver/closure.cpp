@@ -1,0 +1,61 @@
+#include "solver/closure.h"
+
+#include <array>
+
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/sampling.h"
+#include "solver/spaces.h"
+
+namespace clerestory {
+
+Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed) {
+  constexpr std::uint64_t kClosureRays = 0x21;
+  const PatchSet& patches = problem.patches;
+  const std::size_t n = patches.patch_count();
+  Closure closure;
+  closure.arrives = closure.escapes = Field(n, patches.channels);
+  closure.rays = n * static_cast<std::size_t>(rays_per_patch);
+  // The first few neighbours of each patch are enough to tell spaces apart.
+  constexpr std::size_t kNeighbours = 16;
+  std::vector<std::array<PatchId, kNeighbours>> neighbours(n);
+  parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
+    std::array<Ray, 16> rays;
+    std::array<Hit, 16> hits;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Frame frame(patches.normal[i]);
+      const auto corners = patches.corner_positions(PatchId{i});
+      Spectrum arrives(0.0), escapes(0.0);
+      for (int first = 0; first < rays_per_patch; first += 16) {
+        for (std::size_t k = 0; k < 16; ++k) {
+          const auto u = sobol4(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(k),
+                                stream_key(seed, kClosureRays, i));
+          rays[k] = {point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
+                     cosine_direction(frame, u[0], u[1])};
+        }
+        problem.rays.first_hits(patches, rays, hits);
+        if (first == 0)
+          for (std::size_t k = 0; k < kNeighbours; ++k) neighbours[i][k] = hits[k].patch;
+        for (const Hit& hit : hits) {
+          if (hit.escaped()) escapes += hit.transmittance;
+          if (hit.patch.valid()) arrives += hit.transmittance;
+        }
+      }
+      closure.arrives.set(i, arrives / rays_per_patch);
+      closure.escapes.set(i, escapes / rays_per_patch);
+    }
+  });
+
+  Spaces spaces(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const PatchId q : neighbours[i])
+      if (q.valid()) spaces.join(i, q);
+  closure.space.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t root = spaces.find(i);
+    closure.space[i] = root == i ? static_cast<std::uint32_t>(closure.spaces++) : closure.space[root];
+  }
+  return closure;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,124 @@
+#include "solver/gather.h"
+
+#include "solver/gather_point.h"
+#include "solver/methods/path_tracer.h"
+#include "solver/model/parallel.h"
+#include "solver/sampling.h"
+
+namespace clerestory {
+namespace {
+
+enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
+
+GatherQuality sensor_quality(const SolveOptions& options) {
+  const int more = 1 << options.tighten;
+  switch (options.accuracy) {
+    case Accuracy::draft: return {16, 768 * more, 32, 16};
+    case Accuracy::standard: return {32, 3072 * more, 64, 32};
+    case Accuracy::fine: return {48, 9216 * more, 128, 64};
+  }
+  return {};
+}
+
+GatherQuality vertex_quality(const SolveOptions& options) {
+  const int more = 1 << options.tighten;
+  switch (options.accuracy) {
+    case Accuracy::draft: return {12, 144 * more, 16, 8};
+    case Accuracy::standard: return {16, 768 * more, 32, 16};
+    case Accuracy::fine: return {32, 3072 * more, 64, 32};
+  }
+  return {};
+}
+
+struct Place {
+  Vec3 p, n;  ///< local frame, lifted
+};
+
+/// Calls done(index, E, std_error) for each place, from several threads.
+template <class PlaceOf, class Done>
+unsigned long long gather(const Illumination& light, const Solution& solution, std::size_t count,
+                          const PlaceOf& place_of, const GatherQuality& quality, int paths, std::uint64_t key,
+                          std::string_view stage, const Monitor& monitor, const Done& done) {
+  const bool by_paths = !solution.std_error.value.empty();
+  std::vector<unsigned long long> rays(count, 0);
+  constexpr std::size_t kBlock = 2048;
+  for (std::size_t begin = 0; begin < count && !monitor.should_stop(); begin += kBlock) {
+    monitor.report(stage, static_cast<double>(begin) / static_cast<double>(count));
+    parallel_for(std::min(kBlock, count - begin), 16, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = begin + from; i < begin + to; ++i) {
+        const Place at = place_of(i);
+        if (by_paths) {
+          PathSum sum;
+          add_paths_at_point(light, at.p, at.n, stream_key(key, i), 0, paths, sum, rays[i]);
+          done(i, sum.mean(), sum.std_error());
+        } else {
+          done(i, gather_point(light, solution.B, at.p, at.n, quality, stream_key(key, i), rays[i]), Spectrum(0.0));
+        }
+      }
+    });
+  }
+  unsigned long long sum = 0;
+  for (const auto r : rays) sum += r;
+  return sum;
+}
+
+}  // namespace
+
+PointIrradiance gather_at_sensors(const Problem& problem, const Solution& solution, std::span<const SensorPoint> points,
+                                  const SolveOptions& options, const Monitor& monitor) {
+  const Illumination light(problem);
+  PointIrradiance result;
+  result.E = Field(points.size(), problem.patches.channels);
+  if (!solution.std_error.value.empty()) result.std_error = result.E;
+  std::vector<char> reached(points.size(), 0);
+  result.rays = gather(
+      light, solution, points.size(),
+      [&](std::size_t i) {
+        const Vec3 n = points[i].normal;
+        return Place{points[i].position - problem.patches.origin + n * (2 * problem.rays.lift()), n};
+      },
+      sensor_quality(options), 4 * paths_per_point(options), stream_key(options.seed, kSensorRays), "sensors", monitor,
+      [&](std::size_t i, const Spectrum& E, const Spectrum& error) {
+        result.E.set(i, E);
+        if (!result.std_error.value.empty()) result.std_error.set(i, error);
+        reached[i] = 1;
+      });
+  for (const char r : reached) result.complete = result.complete && r;
+  return result;
+}
+
+unsigned long long gather_at_points(const Problem& problem, const Solution& solution, VertexLightmap& lightmap,
+                                    const SolveOptions& options, const Monitor& monitor) {
+  const Illumination light(problem);
+  if (!solution.std_error.value.empty()) lightmap.std_error = Field(lightmap.position.size(), problem.patches.channels);
+  return gather(
+      light, solution, lightmap.position.size(),
+      [&](std::size_t i) {
+        const Vec3 n = lightmap.normal[i];
+        return Place{lightmap.sample_position[i] + n * problem.rays.lift(), n};
+      },
+      vertex_quality(options), paths_per_point(options), stream_key(options.seed, kVertexRays), "vertices", monitor,
+      [&](std::size_t i, const Spectrum& E, const Spectrum& error) {
+        lightmap.E.set(i, E);
+        if (!lightmap.std_error.value.empty()) lightmap.std_error.set(i, error);
+      });
+}
+
+std::vector<std::size_t> buried_points(const Problem& problem, std::span<const SensorPoint> points) {
+  std::vector<std::size_t> buried;
+  constexpr std::uint32_t kRays = 32;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint32_t dark = 0;
+    const Vec3 p = points[i].position - problem.patches.origin + points[i].normal * (2 * problem.rays.lift());
+    const Frame frame(points[i].normal);
+    for (std::uint32_t k = 0; k < kRays; ++k) {
+      const auto u = sobol4(k, i);
+      const Hit hit = problem.rays.first_hit(problem.patches, {p, cosine_direction(frame, u[0], u[1])});
+      dark += !hit.escaped() && !hit.patch.valid();
+    }
+    if (2 * dark > kRays) buried.push_back(i);
+  }
+  return buried;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,170 @@
+#include "solver/lights/direct.h"
+
+#include <algorithm>
+#include <bit>
+#include <numbers>
+
+#include "solver/lights/point_lights.h"
+#include "solver/lights/sun.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/sampling.h"
+
+namespace clerestory {
+namespace {
+
+enum StreamKind : std::uint64_t { kLampPoints = 0x11, kSkyRays = 0x12, kLampRays = 0x13 };
+
+/// Adds to E_i the mean over points of patch i of the irradiance that open_at(point) gives where a segment to
+/// end_for(point, u, v) is free.
+class PatchSampler {
+ public:
+  PatchSampler(const Problem& problem, std::size_t patch, const DirectOptions& options)
+      : problem_(problem),
+        corners_(problem.patches.corner_positions(PatchId{patch})),
+        normal_(problem.patches.normal[patch]),
+        key_(stream_key(options.seed, kLampPoints, patch)),
+        rays_(options.lamp_rays) {}
+
+  const Vec3& normal() const { return normal_; }
+  bool any_corner(const auto& predicate) const { return std::any_of(corners_.begin(), corners_.end(), predicate); }
+
+  template <class Open, class End>
+  Spectrum mean(const Open& open_at, const End& end_for) const {
+    const double lift = problem_.rays.lift();
+    Spectrum sum(0.0);
+    for (int first = 0; first < rays_; first += 16) {
+      SegmentPacket segments;
+      std::array<Spectrum, 16> open;
+      std::array<Vec3, 16> from, to;
+      for (int k = 0; k < 16; ++k) {
+        const auto u = sobol4(static_cast<std::uint32_t>(first + k), key_);
+        const Vec3 point = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
+        from[static_cast<std::size_t>(k)] = point;
+        to[static_cast<std::size_t>(k)] = end_for(point, u[2], u[3]);
+        open[static_cast<std::size_t>(k)] = open_at(point, to[static_cast<std::size_t>(k)]);
+        segments.set(k, point, to[static_cast<std::size_t>(k)]);
+      }
+      for (unsigned visible = problem_.rays.visible16(segments); visible; visible &= visible - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(visible));
+        sum += open[k] * problem_.rays.glass_transmittance(from[k], to[k]);
+      }
+    }
+    return sum / rays_;
+  }
+
+ private:
+  const Problem& problem_;
+  std::array<Vec3, 3> corners_;
+  Vec3 normal_;
+  std::uint64_t key_;
+  int rays_;
+};
+
+template <class Lamp>
+Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
+  if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > 0; })) return Spectrum(0.0);
+  return patch.mean([&](const Vec3& p, const Vec3&) { return open_irradiance(lamp, p, patch.normal()); },
+                    [&](const Vec3&, double, double) { return lamp.position; });
+}
+
+Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {
+  if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
+  return patch.mean(
+      [&](const Vec3& p, const Vec3& end) {
+        return sun.normal_irradiance * std::max(0.0, dot(patch.normal(), end - p) / far_away);
+      },
+      [&](const Vec3& p, double u, double v) { return p + direction_to_sun(sun, u, v) * far_away; });
+}
+
+Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOptions& options) {
+  const Problem& problem = light.problem;
+  const Frame frame(problem.patches.normal[patch]);
+  const auto corners = problem.patches.corner_positions(PatchId{patch});
+  const std::uint64_t key = stream_key(options.seed, kSkyRays, patch);
+  std::array<Ray, 16> rays;
+  std::array<Hit, 16> hits;
+  Spectrum sum(0.0);
+  for (int first = 0; first < options.sky_rays; first += 16) {
+    for (std::size_t k = 0; k < 16; ++k) {
+      const auto u = sobol4(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(k), key);
+      rays[k] = {point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
+                 cosine_direction(frame, u[0], u[1])};
+    }
+    problem.rays.first_hits(problem.patches, rays, hits);
+    for (std::size_t k = 0; k < 16; ++k)
+      if (hits[k].escaped()) sum += light.sky(rays[k].direction) * hits[k].transmittance;
+  }
+  return sum * (std::numbers::pi / options.sky_rays);
+}
+
+/// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part.
+template <class Lamp>
+void balance_lamp(const Problem& problem, const Lamp& lamp, std::size_t number, DirectLight& direct,
+                  const DirectOptions& options) {
+  constexpr std::uint32_t kRays = 1 << 14;
+  const std::uint64_t key = stream_key(options.seed, kLampRays, number);
+  std::array<Ray, 16> rays;
+  std::array<Hit, 16> hits;
+  double sent = 0, arrived = 0, escaped = 0;
+  for (std::uint32_t first = 0; first < kRays; first += 16) {
+    for (std::uint32_t k = 0; k < 16; ++k) {
+      const auto u = sobol4(first + k, key);
+      rays[k] = {lamp.position, sphere_direction(u[0], u[1])};
+    }
+    problem.rays.first_hits(problem.patches, rays, hits);
+    for (std::size_t k = 0; k < 16; ++k) {
+      const double I = luminous_mean(intensity(lamp, rays[k].direction));
+      const double passed = luminous_mean(intensity(lamp, rays[k].direction) * hits[k].transmittance);
+      sent += I;
+      (hits[k].escaped() ? escaped : arrived) += hits[k].escaped() || hits[k].patch.valid() ? passed : 0;
+    }
+  }
+  const double flux = luminous_mean(power(lamp));
+  direct.rays += kRays;
+  direct.energy.emitted += flux;
+  if (!(sent > 0)) return;
+  direct.energy.escaped += flux * escaped / sent;
+  direct.energy.absorbed += flux * (sent - arrived - escaped) / sent;
+}
+
+}  // namespace
+
+DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor) {
+  const Problem& problem = light.problem;
+  const Lights& lights = problem.lights;
+  const std::size_t n = problem.patches.patch_count();
+  DirectLight direct;
+  direct.E = Field(n, problem.patches.channels);
+  if (lights.empty()) return direct;
+
+  const double far_away = 4 * problem.rays.diameter();
+  std::vector<double> daylight(n);  // [W] of each patch
+  constexpr std::size_t kBlock = 1 << 14;
+  for (std::size_t begin = 0; begin < n && !monitor.should_stop(); begin += kBlock) {
+    monitor.report("direct", static_cast<double>(begin) / static_cast<double>(n));
+    parallel_for(std::min(kBlock, n - begin), 32, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = begin + from; i < begin + to; ++i) {
+        const PatchSampler patch(problem, i, options);
+        Spectrum lamps(0.0), sky(0.0);
+        for (const auto& lamp : lights.points) lamps += from_lamp(patch, lamp);
+        for (const auto& lamp : lights.spots) lamps += from_lamp(patch, lamp);
+        for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
+        if (!light.sky.dark()) sky += from_sky(light, i, options);
+        direct.E.set(i, lamps + sky);
+        daylight[i] = luminous_mean(sky) * problem.patches.area[i];
+      }
+    });
+  }
+  for (const double flux : daylight) direct.energy.emitted += flux;
+  direct.rays += n * static_cast<std::size_t>(options.lamp_rays) *
+                 (lights.points.size() + lights.spots.size() + lights.suns.size());
+  if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
+  std::size_t number = 0;
+  for (const auto& lamp : lights.points) balance_lamp(problem, lamp, number++, direct, options);
+  for (const auto& lamp : lights.spots) balance_lamp(problem, lamp, number++, direct, options);
+  return direct;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,26 @@
+#pragma once
+// Light that reaches the patches from sky, sun and luminaires without a bounce.
+
+#include "solver/lights/illumination.h"
+#include "solver/model/monitor.h"
+#include "solver/model/solution.h"
+
+namespace clerestory {
+
+struct DirectOptions {
+  int lamp_rays = 16;  ///< shadow rays from a patch to each lamp and sun, a multiple of 16
+  int sky_rays = 256;  ///< cosine rays a patch that look for the sky
+  std::uint64_t seed = 1;
+};
+
+struct DirectLight {
+  Field E;               ///< N x channels, mean irradiance of each patch [W/m2]
+  EnergyBalance energy;  ///< emitted: luminaires' flux, and what sky and sun bring in; escaped and absorbed (by glass and
+                         ///< sides that take no part): the part of the luminaires' flux that misses the patches
+  unsigned long long rays = 0;
+};
+
+/// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share.
+DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {});
+
+}  // namespace clerestory

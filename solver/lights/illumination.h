@@ -1,0 +1,18 @@
+#pragma once
+// The lights of a problem, ready to be sampled.
+
+#include "solver/lights/light_sampler.h"
+#include "solver/lights/sky.h"
+#include "solver/problem.h"
+
+namespace clerestory {
+
+struct Illumination {
+  const Problem& problem;
+  LightSampler lamps;
+  SkyRadiance sky;
+
+  explicit Illumination(const Problem& p) : problem(p), lamps(p), sky(p.lights) {}
+};
+
+}  // namespace clerestory

@@ -1,0 +1,57 @@
+#pragma once
+// All lights that are worth a shadow ray, chosen in proportion to their flux.
+
+#include <vector>
+
+#include "solver/lights/sky.h"
+#include "solver/problem.h"
+
+namespace clerestory {
+
+/// A glowing patch is sampled like a light when it is brighter than kBrighter times the mean exitance of all surfaces;
+/// dimmer glow is found well enough by the bundle that looks for reflected light.
+inline constexpr double kBrighter = 4;
+
+/// One point of a light, as seen from where its light is asked for.
+struct LightSample {
+  Vec3 end;             ///< where the shadow ray goes to, lifted [m]
+  Spectrum irradiance;  ///< at the receiver when nothing blocks, divided by the density of the choice
+  double density = 0;   ///< of choosing this direction, per solid angle; 0 for lights that a bundle cannot hit
+};
+
+class LightSampler {
+ public:
+  explicit LightSampler(const Problem& problem);
+
+  bool empty() const { return lights_.empty(); }
+  bool has_emitters() const { return has_emitters_; }
+  bool is_explicit(PatchId p) const { return has_emitters_ && explicit_[p]; }
+
+  /// Light `pick` in [0, 1) chosen by flux, and the point (u, v) of it, for receiver point p with normal n.
+  /// Glowing patches only when `emitters_only`.
+  LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool emitters_only) const;
+
+  /// Density per solid angle with which sample() would choose the direction from p that ends on the explicit patch q
+  /// at `distance`, `cos_q` being the cosine there.
+  double density(PatchId q, double distance, double cos_q, bool emitters_only) const;
+
+  /// Irradiance at p of luminaires without extent and of the sun: a shadow ray to each lamp, sun_rays to each sun.
+  Spectrum small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
+
+ private:
+  enum class Kind : std::uint8_t { patch, point, spot, sun };
+  struct Light {
+    Kind kind;
+    std::uint32_t index;
+    double cumulative, cumulative_emitters;  ///< flux of the lights up to and with this one, normalised to 1
+    double share, share_emitters;            ///< probability of the choice
+  };
+  const Problem& problem_;
+  std::vector<Light> lights_;
+  std::vector<double> share_of_patch_;  ///< N, in proportion of all lights; empty without emitters
+  std::vector<bool> explicit_;
+  double emitters_share_ = 0;
+  bool has_emitters_ = false;
+};
+
+}  // namespace clerestory

@@ -1,0 +1,13 @@
+#pragma once
+// Directions to points of the sun's disc.
+
+#include "solver/model/light_spec.h"
+
+namespace clerestory {
+
+inline constexpr double kSunDiameterDeg = 0.533;  ///< mean angular diameter seen from the Earth
+
+/// Unit direction to a point of the disc, uniform over its solid angle for u, v uniform in [0, 1).
+Vec3 direction_to_sun(const Sun& sun, double u, double v);
+
+}  // namespace clerestory

@@ -1,0 +1,147 @@
+#include "solver/measured_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/methods/path_tracer.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/sampling.h"
+
+namespace clerestory {
+namespace {
+
+enum StreamKind : std::uint64_t { kErrorPoints = 0x71, kErrorPaths = 0x72, kSensorPaths = 0x73 };
+
+struct Budget {
+  std::size_t points;
+  int paths;
+};
+
+Budget budget(Accuracy accuracy) {
+  switch (accuracy) {
+    case Accuracy::draft: return {128, 256};
+    case Accuracy::standard: return {256, 1024};
+    case Accuracy::fine: return {512, 4096};
+  }
+  return {};
+}
+
+/// One comparison: value, reference and the reference's standard error, as luminous means.
+struct Sample {
+  double x = 0, r = 0, std_error = 0;
+};
+
+MeasuredError summarise(const std::vector<Sample>& samples) {
+  MeasuredError error;
+  error.samples = samples.size();
+  if (samples.empty()) return error;
+  const double n = static_cast<double>(samples.size());
+  double mean = 0, squares = 0, noise = 0;
+  for (const Sample& s : samples) mean += s.r / n;
+  if (!(mean > 0)) return error;
+  std::vector<double> relative;
+  for (const Sample& s : samples) {
+    squares += (s.x - s.r) * (s.x - s.r) / n;
+    noise += s.std_error * s.std_error / n;
+  }
+  double spread = 0;
+  for (const Sample& s : samples) {
+    const double d2 = (s.x - s.r) * (s.x - s.r) - s.std_error * s.std_error - (squares - noise);
+    spread += d2 * d2 / n;
+    // Points much darker than the mean would make a share of nothing.
+    relative.push_back(std::abs(s.x - s.r) / std::max(s.r, 0.05 * mean));
+  }
+  // The reference's own noise adds to the differences; its variance is known and comes off.
+  const double variance = std::max(squares - noise, 0.0);
+  const double half_width = 1.96 * std::sqrt(spread / n);  // of the mean square
+  error.rms_relative = std::sqrt(variance) / mean;
+  error.confidence = (std::sqrt(variance + half_width) - std::sqrt(variance)) / mean;
+  const auto p95 = relative.begin() + static_cast<std::ptrdiff_t>(0.95 * (n - 1));
+  std::nth_element(relative.begin(), p95, relative.end());
+  error.p95_relative = *p95 * (squares > 0 ? std::sqrt(variance / squares) : 1.0);
+  return error;
+}
+
+/// References for samples whose x is set, at place(i) = {p, n}.
+template <class Place>
+MeasuredError compare(const Problem& problem, std::vector<Sample>& samples, const Place& place, int paths,
+                      std::uint64_t key, const Monitor& monitor) {
+  const Illumination light(problem);
+  std::vector<char> reached(samples.size(), 0);
+  constexpr std::size_t kBlock = 32;
+  for (std::size_t begin = 0; begin < samples.size() && !monitor.should_stop(); begin += kBlock) {
+    monitor.report("error", static_cast<double>(begin) / static_cast<double>(samples.size()));
+    parallel_for(std::min(kBlock, samples.size() - begin), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = begin + from; i < begin + to; ++i) {
+        const auto [p, n] = place(i);
+        PathSum sum;
+        unsigned long long rays = 0;
+        add_paths_at_point(light, p, n, stream_key(key, i), 0, paths, sum, rays);
+        samples[i].r = luminous_mean(sum.mean());
+        samples[i].std_error = luminous_mean(sum.std_error());
+        reached[i] = 1;
+      }
+    });
+  }
+  std::vector<Sample> measured;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (reached[i]) measured.push_back(samples[i]);
+  return summarise(measured);
+}
+
+}  // namespace
+
+MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const SolveOptions& options,
+                            const Monitor& monitor) {
+  const PatchSet& patches = problem.patches;
+  const Budget spend = budget(options.accuracy);
+  std::vector<double> cumulative(patches.patch_count());
+  double area = 0;
+  for (std::size_t i = 0; i < cumulative.size(); ++i) cumulative[i] = area += patches.area[i];
+  if (!(area > 0)) return {};
+
+  struct Place {
+    Vec3 p, n;
+  };
+  std::vector<Sample> samples(spend.points);
+  std::vector<Place> places(spend.points);
+  RandomStream random(options.seed, kErrorPoints);
+  for (std::size_t s = 0; s < spend.points; ++s) {
+    const double at = (static_cast<double>(s) + random.uniform()) / static_cast<double>(spend.points) * area;
+    const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), at);
+    const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
+    const double u = random.uniform(), v = random.uniform();
+    // The map is linear in the corners, so it interpolates their values as well as their positions.
+    const auto weight = point_on_triangle({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, u, v);
+    for (int k = 0; k < 3; ++k)
+      samples[s].x += weight[k] * luminous_mean(lightmap.E[lightmap.corners[i][static_cast<std::size_t>(k)]]);
+    places[s] = {point_on_triangle(patches.corner_positions(PatchId{i}), u, v) +
+                     patches.normal[i] * problem.rays.lift(),
+                 patches.normal[i]};
+  }
+  return compare(problem, samples, [&](std::size_t i) { return places[i]; }, spend.paths,
+                 stream_key(options.seed, kErrorPaths), monitor);
+}
+
+MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,
+                                   const SolveOptions& options, const Monitor& monitor) {
+  const Budget spend = budget(options.accuracy);
+  const std::size_t count = std::min(points.size(), spend.points);
+  struct Place {
+    Vec3 p, n;
+  };
+  const auto point_of = [&](std::size_t s) { return s * points.size() / count; };
+  std::vector<Sample> samples(count);
+  for (std::size_t s = 0; s < count; ++s) samples[s].x = luminous_mean(E[point_of(s)]);
+  return compare(
+      problem, samples,
+      [&](std::size_t s) {
+        const SensorPoint& point = points[point_of(s)];
+        return Place{point.position - problem.patches.origin + point.normal * (2 * problem.rays.lift()), point.normal};
+      },
+      spend.paths, stream_key(options.seed, kSensorPaths), monitor);
+}
+
+}  // namespace clerestory

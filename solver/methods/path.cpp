@@ -1,0 +1,70 @@
+#include "solver/methods/path.h"
+
+#include <algorithm>
+
+#include "solver/methods/path_tracer.h"
+#include "solver/model/parallel.h"
+#include "solver/model/units.h"
+#include "solver/sampling.h"
+
+namespace clerestory {
+
+Solution path_trace(const Illumination& light, const DirectLight& direct, const Closure& closure,
+                    const PathOptions& options, const Monitor& monitor) {
+  constexpr std::uint64_t kPathsOfPatch = 0x51;
+  const Problem& problem = light.problem;
+  const PatchSet& patches = problem.patches;
+  const std::size_t n = patches.patch_count();
+  const double lift = problem.rays.lift();
+  std::vector<PathSum> sums(n);
+  std::vector<unsigned long long> rays(n, 0);
+
+  Solution solution;
+  solution.method = "path";
+  constexpr int kRound = 16;
+  int done = 0;
+  constexpr std::size_t kBlock = 1 << 12;
+  for (; done < options.paths && solution.stop == StopReason::converged; done += kRound) {
+    for (std::size_t begin = 0; begin < n; begin += kBlock) {
+      // The first round is finished whatever the clock says: every patch needs a value.
+      if (monitor.is_interrupted() || (done > 0 && monitor.is_late())) {
+        solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+        break;
+      }
+      monitor.report("paths", (done + kRound * static_cast<double>(begin) / static_cast<double>(n)) / options.paths);
+      parallel_for(std::min(kBlock, n - begin), 16, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = begin + from; i < begin + to; ++i) {
+          const auto corners = patches.corner_positions(PatchId{i});
+          const Vec3 normal = patches.normal[i];
+          const std::uint64_t key = stream_key(options.seed, kPathsOfPatch, i);
+          for (int k = done; k < std::min(done + kRound, options.paths); ++k) {
+            const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+            RandomStream random(key, static_cast<std::uint64_t>(k), 1);
+            const Vec3 start = point_on_triangle(corners, u[2], u[3]) + normal * lift;
+            sums[i].add(trace_path(light, start, normal, {u[0], u[1]}, random, rays[i]));
+          }
+        }
+      });
+    }
+  }
+
+  solution.E = solution.B = solution.std_error = Field(n, patches.channels);
+  solution.energy = direct.energy;
+  solution.rays = direct.rays + closure.rays;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Spectrum E = sums[i].mean(), B = patches.M[i] + patches.rho[i] * E;
+    const Spectrum lost_in_glass = Spectrum(1.0) - closure.arrives[i] - closure.escapes[i];
+    solution.E.set(i, E);
+    solution.B.set(i, B);
+    solution.std_error.set(i, sums[i].std_error());
+    solution.energy.emitted += patches.area[i] * luminous_mean(patches.M[i]);
+    solution.energy.absorbed +=
+        patches.area[i] * luminous_mean((Spectrum(1.0) - patches.rho[i]) * E + lost_in_glass * B);
+    solution.energy.escaped += patches.area[i] * luminous_mean(closure.escapes[i] * B);
+    solution.iterations += static_cast<long>(sums[i].count);
+    solution.rays += rays[i];
+  }
+  return solution;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,240 @@
+#include "solver/methods/progressive.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/sampling.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::uint64_t kShotRays = 0x41;
+constexpr std::uint32_t kLeastRays = 16, kMostRaysAPiece = 4096;
+
+/// Rays first .. first + count - 1 of patch `from`, each carrying `flux` [W].
+struct Piece {
+  std::uint32_t from, first, count;
+  Spectrum flux;
+};
+
+/// State of the light between rounds. Sums run over patches in their order, for the same bits every time.
+struct Unshot {
+  const PatchSet& patches;
+  Field E, dB;
+  double escaped = 0, absorbed = 0;  ///< [W], luminous mean; absorbed by glass and sides that take no part
+
+  double flux_at(std::size_t i) const { return patches.area[i] * std::abs(luminous_mean(dB[i])); }
+  double flux() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < patches.patch_count(); ++i) sum += flux_at(i);
+    return sum;
+  }
+  double net_flux() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < patches.patch_count(); ++i) sum += patches.area[i] * luminous_mean(dB[i]);
+    return sum;
+  }
+};
+
+Spectrum divided(const Spectrum& a, const Spectrum& b) {
+  return {b[0] > 0 ? a[0] / b[0] : 0, b[1] > 0 ? a[1] / b[1] : 0, b[2] > 0 ? a[2] / b[2] : 0};
+}
+
+/// Of each space: the uniform radiosity that carries as much flux as is unshot there.
+std::vector<Spectrum> ambient_radiosity(const Unshot& light, const Closure& closure) {
+  const PatchSet& p = light.patches;
+  std::vector<Spectrum> unshot(closure.spaces), lost(closure.spaces);
+  for (std::size_t i = 0; i < p.patch_count(); ++i) {
+    unshot[closure.space[i]] += p.area[i] * light.dB[i];
+    lost[closure.space[i]] += p.area[i] * (Spectrum(1.0) - p.rho[i] * closure.arrives[i]);
+  }
+  for (std::size_t s = 0; s < closure.spaces; ++s) unshot[s] = divided(unshot[s], lost[s]);
+  return unshot;
+}
+
+/// Shoots the uniform radiosity e of each space from all its patches, when that leaves little unshot.
+bool shoot_ambient(Unshot& light, const Closure& closure, const std::vector<Spectrum>& e, double worth_it) {
+  const PatchSet& p = light.patches;
+  const auto unshot_after = [&](std::size_t i) {
+    const Spectrum e_i = e[closure.space[i]];
+    return light.dB[i] - e_i + p.rho[i] * closure.arrives[i] * e_i;
+  };
+  double left = 0;
+  for (std::size_t i = 0; i < p.patch_count(); ++i) left += p.area[i] * std::abs(luminous_mean(unshot_after(i)));
+  if (!(left < worth_it * light.flux())) return false;
+  for (std::size_t i = 0; i < p.patch_count(); ++i) {
+    const Spectrum e_i = e[closure.space[i]];
+    light.dB.set(i, unshot_after(i));
+    light.E.add(i, closure.arrives[i] * e_i);
+    light.escaped += p.area[i] * luminous_mean(closure.escapes[i] * e_i);
+    light.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - closure.arrives[i] - closure.escapes[i]) * e_i);
+  }
+  return true;
+}
+
+/// The patches to shoot in this round, most unshot flux first.
+std::vector<std::uint32_t> brightest(const Unshot& light, double share) {
+  const std::size_t n = light.patches.patch_count();
+  double most = 0;
+  for (std::size_t i = 0; i < n; ++i) most = std::max(most, light.flux_at(i));
+  std::vector<std::uint32_t> chosen;
+  for (std::size_t i = 0; i < n; ++i)
+    if (light.flux_at(i) >= share * most && light.flux_at(i) > 0) chosen.push_back(static_cast<std::uint32_t>(i));
+  if (share >= 1 && chosen.size() > 1) chosen.resize(1);
+  return chosen;
+}
+
+struct Landing {
+  PatchId patch;
+  bool escaped;
+};
+
+void trace(const Problem& problem, const Piece& piece, std::uint64_t seed, std::span<Landing> landings,
+           std::span<Spectrum> passed) {
+  const PatchSet& patches = problem.patches;
+  const Frame frame(patches.normal[piece.from]);
+  const auto corners = patches.corner_positions(PatchId{piece.from});
+  const std::uint64_t key = stream_key(seed, kShotRays, piece.from);
+  const Vec3 lifted = frame.n * problem.rays.lift();
+  std::array<Ray, 16> rays;
+  std::array<Hit, 16> hits;
+  for (std::uint32_t first = 0; first < piece.count; first += 16) {
+    const std::uint32_t count = std::min<std::uint32_t>(16, piece.count - first);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const auto u = sobol4(piece.first + first + k, key);
+      rays[k] = {point_on_triangle(corners, u[2], u[3]) + lifted, cosine_direction(frame, u[0], u[1])};
+    }
+    problem.rays.first_hits(patches, std::span(rays).first(count), std::span(hits).first(count));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      landings[first + k] = {hits[k].patch, hits[k].escaped()};
+      if (!passed.empty()) passed[first + k] = hits[k].transmittance;
+    }
+  }
+}
+
+void deposit(Unshot& light, const Piece& piece, std::span<const Landing> landings, std::span<const Spectrum> passed) {
+  const PatchSet& p = light.patches;
+  const double flux = luminous_mean(piece.flux);
+  for (std::size_t k = 0; k < landings.size(); ++k) {
+    const auto [q, escaped] = landings[k];
+    Spectrum arriving = piece.flux;
+    if (!passed.empty()) {
+      arriving *= passed[k];
+      light.absorbed += flux - luminous_mean(arriving);
+    }
+    if (escaped) {
+      light.escaped += luminous_mean(arriving);
+    } else if (!q.valid()) {
+      light.absorbed += luminous_mean(arriving);
+    } else {
+      const double per_area = 1 / p.area[q];
+      for (int c = 0; c < p.channels; ++c) {
+        const double E = arriving[c] * per_area;
+        light.E.at(q, c) += E;
+        light.dB.at(q, c) += p.rho.at(q, c) * E;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Solution shoot(const Problem& problem, const DirectLight& direct, const Closure& closure, const ShootOptions& options,
+               const Monitor& monitor) {
+  const PatchSet& p = problem.patches;
+  const std::size_t n = p.patch_count();
+  Unshot light{p, direct.E, Field(n, p.channels)};
+  double glow = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    light.dB.set(i, p.M[i] + p.rho[i] * direct.E[i]);
+    glow += p.area[i] * luminous_mean(p.M[i]);
+  }
+
+  Solution solution;
+  solution.method = "progressive";
+  solution.energy = direct.energy;
+  solution.energy.emitted += glow;
+  const double emitted = solution.energy.emitted;
+  const double flux_per_ray = light.flux() / (options.rays_per_patch * static_cast<double>(n));
+  std::vector<std::uint32_t> next_ray(n, 0);
+  std::vector<Landing> landings;
+  std::vector<Spectrum> passed;
+
+  double residual = emitted > 0 ? light.flux() / emitted : 0;
+  const double first_residual = residual;
+  int round = 0;
+  for (; residual > options.stop_fraction; ++round) {
+    if (round == options.max_rounds) {
+      solution.stop = StopReason::iteration_limit;
+      break;
+    }
+    if (monitor.should_stop()) {
+      solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+      break;
+    }
+    monitor.report("shoot", std::log(first_residual / residual) / std::log(first_residual / options.stop_fraction));
+
+    const bool uniform = shoot_ambient(light, closure, ambient_radiosity(light, closure), options.ambient_worth_it);
+    if (!uniform) {
+      std::vector<Piece> pieces;
+      std::vector<std::size_t> begin{0};
+      for (const std::uint32_t i : brightest(light, options.batch_share)) {
+        const double wanted = light.flux_at(i) / flux_per_ray;
+        const auto count = static_cast<std::uint32_t>(std::clamp(wanted, double{kLeastRays}, 1e8)) / 16 * 16;
+        const Spectrum flux = light.dB[i] * (p.area[i] / count);
+        light.dB.set(i, Spectrum(0.0));
+        for (std::uint32_t done = 0; done < count; done += kMostRaysAPiece) {
+          const std::uint32_t part = std::min(kMostRaysAPiece, count - done);
+          pieces.push_back({i, next_ray[i] + done, part, flux});
+          begin.push_back(begin.back() + part);
+        }
+        next_ray[i] += count;
+        ++solution.iterations;
+      }
+      solution.rays += begin.back();
+      // Blocks bound the memory of rays under way.
+      constexpr std::size_t kBlock = std::size_t{1} << 21;
+      for (std::size_t first = 0; first < pieces.size();) {
+        std::size_t last = first + 1;
+        while (last < pieces.size() && begin[last + 1] - begin[first] <= kBlock) ++last;
+        const std::size_t offset = begin[first];
+        landings.resize(begin[last] - offset);
+        if (problem.rays.has_glass()) passed.resize(landings.size());
+        const auto part = [&](auto& all, std::size_t k) {
+          return all.empty() ? std::span(all) : std::span(all).subspan(begin[k] - offset, pieces[k].count);
+        };
+        parallel_for(last - first, 4, [&](std::size_t from, std::size_t to) {
+          for (std::size_t k = first + from; k < first + to; ++k)
+            trace(problem, pieces[k], options.seed, part(landings, k), part(passed, k));
+        });
+        for (std::size_t k = first; k < last; ++k) deposit(light, pieces[k], part(landings, k), part(passed, k));
+        first = last;
+      }
+    }
+    residual = light.flux() / emitted;
+    solution.log.push_back("round " + std::to_string(round) + (uniform ? ": ambient" : ": " + std::to_string(solution.iterations) + " shots") +
+                           ", unshot " + std::to_string(residual));
+  }
+
+  const std::vector<Spectrum> ambient = ambient_radiosity(light, closure);
+  solution.E = light.E;
+  solution.B = Field(n, p.channels);
+  for (std::size_t i = 0; i < n; ++i) {
+    solution.energy.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - p.rho[i]) * light.E[i]);
+    const Spectrum E = light.E[i] + ambient[closure.space[i]] * closure.arrives[i];
+    solution.E.set(i, E);
+    solution.B.set(i, p.M[i] + p.rho[i] * E);
+  }
+  solution.energy.absorbed += light.absorbed;
+  solution.energy.escaped += light.escaped;
+  solution.energy.unshot = light.net_flux();
+  solution.residual = residual;
+  solution.rays += direct.rays + closure.rays;
+  return solution;
+}
+
+}  // namespace clerestory

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
+#include "solver/model/version.h"
 
 namespace clerestory {
 namespace {
@@ -68,6 +69,13 @@ void set(Json& json, const Figure& figure) {
 }
 
 }  // namespace
+
+RunReport new_report(const std::string& input) {
+  RunReport report;
+  report.version = kVersion;
+  report.input = input;
+  return report;
+}
 
 std::string stop_name(StopReason stop) {
   switch (stop) {

@@ -49,6 +49,9 @@ struct RunReport {
   std::vector<std::string> left_out;  ///< what the scene did not need, so was not computed
 };
 
+/// A report to fill, with the version of this library.
+RunReport new_report(const std::string& input);
+
 /// "converged", "time-limit", "interrupted" or "iteration-limit".
 std::string stop_name(StopReason stop);
 

@@ -176,6 +176,7 @@ void write_result(const std::filesystem::path& file, const PatchSet& patches, co
   add_indices_of_patches(data->GetCellData(), patches);
   add_indices(data->GetCellData(), "level", patches.patch_count(), [](std::size_t) { return 0; });
   add_light(data->GetPointData(), lightmap.E, radiosity_at_points(patches, lightmap), daylight_reference);
+  if (!lightmap.std_error.value.empty()) add_field(data->GetPointData(), "irradiance_std_error", lightmap.std_error);
   add_field_data(data, patches, report);
   data->GetCellData()->SetActiveScalars("illuminance");
   data->GetPointData()->SetActiveScalars("illuminance");

@@ -1,0 +1,33 @@
+#pragma once
+// Options that several commands share.
+
+#include <string>
+
+#include "io/read_scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace clerestory {
+
+struct CommonArguments {
+  int threads = 0;  ///< 0: all cores
+  bool quiet = false, verbose = false;
+  std::string log, report;  ///< files; empty when not asked for
+};
+
+/// --threads, --quiet, --verbose, --log, --report
+void add_common_options(CLI::App& command, CommonArguments& arguments);
+
+/// INPUT, --unit, --up, --sky
+void add_input_options(CLI::App& command, std::string& input, ReadOptions& options);
+
+/// An option that takes a number above 0, with its unit in the help.
+void add_positive_option(CLI::App& command, const std::string& name, std::optional<double>& value,
+                         const std::string& unit, const std::string& help);
+
+/// Refuses an output that does not end in `extension`, as a slip of the pen.
+void require_extension(CLI::App& command, const std::string& option, const std::string& extension);
+
+}  // namespace clerestory

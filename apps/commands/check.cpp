@@ -1,0 +1,121 @@
+// clerestory check: what is in a model, what is wrong with it, and what a solve would make of it. Nothing is solved.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/mesh_summary.h"
+#include "apps/run.h"
+#include "apps/scene_checks.h"
+#include "apps/settings.h"
+#include "apps/wording.h"
+#include "solver/lit_sides.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+struct Arguments {
+  CommonArguments common;
+  SolveArguments solve;
+  ReadOptions read;
+  std::string input;
+};
+
+std::string colour(const Spectrum& s) {
+  return s.is_grey() ? rounded(s[0]) : "(" + rounded(s[0]) + ", " + rounded(s[1]) + ", " + rounded(s[2]) + ")";
+}
+
+std::string describe(const Material& m) {
+  std::string text = m.kind == MaterialKind::glass ? "glass, transmittance " + colour(m.transmittance)
+                                                   : "reflectance " + colour(m.reflectance);
+  if (m.total_power)
+    text += ", emits " + colour(*m.total_power) + " W in all";
+  else if (m.emits())
+    text += ", emits " + colour(m.exitance) + " W/m2 (" + rounded(photometric(m.exitance)) + " lm/m2)";
+  if (m.sides == 1) text += ", one-sided";
+  return text;
+}
+
+void say_materials(const Scene& scene, Console& console) {
+  std::vector<std::size_t> faces(scene.materials.size(), 0);
+  for (const MaterialId m : scene.polygons.material) ++faces[m];
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (faces[i])
+      console.say("  material '" + scene.materials[i].name + "': " + describe(scene.materials[i]) + ", " +
+                  counted(faces[i], "face"));
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (!faces[i]) console.say("  material '" + scene.materials[i].name + "': not used by any face");
+}
+
+void say_lights(const Scene& scene, Console& console) {
+  const Lights& l = scene.lights;
+  for (const auto& p : l.points)
+    console.say("  light    point luminaire '" + p.name + "', " + rounded(photometric(p.power)) + " lm");
+  for (const auto& s : l.spots)
+    console.say("  light    spot '" + s.name + "', " + rounded(photometric(s.intensity)) + " cd");
+  if (l.sky)
+    console.say(std::string("  light    ") + (l.sky->model == SkyModel::uniform ? "uniform" : "CIE overcast") +
+                " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +
+                " lx on open ground, ground reflectance " + rounded(l.sky->ground_reflectance));
+  for (const auto& s : l.suns)
+    console.say("  light    sun from (" + rounded(s.direction.x) + ", " + rounded(s.direction.y) + ", " +
+                rounded(s.direction.z) + "), " + rounded(photometric(s.normal_irradiance)) + " lx");
+  std::size_t glowing = 0;
+  for (const MaterialId m : scene.polygons.material) glowing += scene.materials[m].emits();
+  if (glowing) console.say("  light    " + counted(glowing, "face") + " of emitting materials");
+  if (!has_light(scene))
+    console.warn(scene.file + ": there is no light; a solve would be refused. Add --sky NAME:LUX.");
+}
+
+ExitCode check_command(const Arguments& arguments, Console& console) {
+  const Scene scene = read_scene(arguments.input, arguments.read);
+  const Settings settings = effective_settings(arguments.solve, scene);
+  warn_about_scene(scene, console);
+  RunReport report = new_report(arguments.input);
+  report.seconds.read = console.elapsed();
+
+  auto [patches, repairs] = build_patches(scene, settings.mesh, console.monitor());
+  if (console.interrupted()) return kInterrupted;
+  report.seconds.mesh = console.elapsed() - report.seconds.read;
+  const RayScene rays(patches);
+  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  const Problem problem{patches, rays, lights};
+  if (has_light(scene)) make_patches(patches, find_lit_sides(problem).wanted);
+  const std::vector<SensorPoint> sensors = all_sensor_points(scene);
+  warn_about_places(problem, scene, sensors, console);
+
+  console.say(arguments.input + ": " + counted(scene.surfaces.size(), "object") + ", " +
+              counted(scene.materials.size(), "material") + ", " + counted(sensors.size(), "sensor") + ", " +
+              (scene.channels() == 1 ? "grey" : "in colour"));
+  say_mesh(repairs, console);
+  say_materials(scene, console);
+  say_lights(scene, console);
+
+  report.settings = as_figures(settings, arguments.read);
+  report.threads = arguments.common.threads;
+  report.repairs = repairs;
+  report.counts.triangles = patches.triangle_count();
+  report.counts.sensors = sensors.size();
+  report.seconds.total = console.elapsed();
+  report.peak_memory_bytes = peak_memory_bytes();
+  report.warnings = console.warnings();
+  if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
+  return kDone;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& program, Task& task) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *program.add_subcommand("check", "counts, extents, materials, lights and defects of a model");
+  add_input_options(command, arguments->input, arguments->read);
+  add_common_options(command, arguments->common);
+  command.footer("example: clerestory check data/scenes/house.json");
+  command.callback([arguments, &task] {
+    task = [arguments] {
+      return run(arguments->common, [&](Console& console) { return check_command(*arguments, console); });
+    };
+  });
+}
+
+}  // namespace clerestory

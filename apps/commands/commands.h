@@ -1,0 +1,22 @@
+#pragma once
+// The commands of the program: one file each. To add one, write commands/NAME.cpp, declare it here and name it in
+// main.cpp.
+
+#include <functional>
+
+#include "apps/exit_code.h"
+
+namespace CLI {
+class App;
+}
+
+namespace clerestory {
+
+/// What the command line asked for; set by the command that was named, and run once all arguments are read.
+using Task = std::function<ExitCode()>;
+
+void add_solve_command(CLI::App& program, Task& task);
+void add_check_command(CLI::App& program, Task& task);
+void add_mesh_command(CLI::App& program, Task& task);
+
+}  // namespace clerestory

@@ -1,0 +1,93 @@
+// clerestory mesh: the patches that a solve would start from, and how good they are.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/mesh_summary.h"
+#include "apps/run.h"
+#include "apps/scene_checks.h"
+#include "apps/settings.h"
+#include "apps/wording.h"
+#include "io/atomic_file.h"
+#include "io/write_result.h"
+#include "solver/lit_sides.h"
+
+namespace clerestory {
+namespace {
+
+struct Arguments {
+  CommonArguments common;
+  SolveArguments solve;
+  ReadOptions read;
+  std::string input, output;
+};
+
+/// With light in the scene, the sides it can reach; without, both sides of everything.
+LitSides sides_to_show(const Scene& scene, const PatchSet& patches) {
+  if (!has_light(scene)) return {std::vector<bool>(2 * patches.triangle_count(), true)};
+  const RayScene rays(patches);
+  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  return find_lit_sides({patches, rays, lights});
+}
+
+ExitCode mesh_command(const Arguments& arguments, Console& console) {
+  check_writable(arguments.output);
+  const Scene scene = read_scene(arguments.input, arguments.read);
+  const Settings settings = effective_settings(arguments.solve, scene);
+  warn_about_scene(scene, console);
+  RunReport report = new_report(arguments.input);
+  report.seconds.read = console.elapsed();
+
+  auto [patches, repairs] = build_patches(scene, settings.mesh, console.monitor());
+  if (console.interrupted()) {
+    console.warn("interrupted before the mesh was complete; nothing is written.");
+    return kInterrupted;
+  }
+  report.seconds.mesh = console.elapsed() - report.seconds.read;
+  const LitSides lit = sides_to_show(scene, patches);
+  make_patches(patches, lit.wanted);
+
+  report.settings = as_figures(settings, arguments.read);
+  report.threads = arguments.common.threads;
+  report.repairs = repairs;
+  report.counts.triangles = patches.triangle_count();
+  report.counts.elements = patches.patch_count();
+  report.counts.dark_sides = lit.dark_sides;
+  write_patches(arguments.output, patches, report);
+
+  console.say(arguments.input + ": " + counted(report.counts.elements, "patch side") + " on " +
+              counted(report.counts.triangles, "triangle") + ", " + counted(lit.dark_sides, "dark side") + " left out");
+  say_mesh(repairs, console);
+  report.seconds.total = console.elapsed();
+  report.peak_memory_bytes = peak_memory_bytes();
+  report.warnings = console.warnings();
+  if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
+  console.say("results " + arguments.output);
+  return kDone;
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& program, Task& task) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *program.add_subcommand("mesh", "the patches a solve would start from, with quality figures");
+  add_input_options(command, arguments->input, arguments->read);
+  command.add_option("-o,--output", arguments->output, "the patches, for ParaView")
+      ->type_name("PATCHES.vtp")
+      ->required();
+  require_extension(command, "--output", ".vtp");
+  add_positive_option(command, "--max-element", arguments->solve.max_element, "M",
+                      "longest element edge in metres (default: by accuracy and size)");
+  command.add_option("--accuracy", arguments->solve.accuracy, "draft, standard or fine (default: standard)")
+      ->type_name("NAME")
+      ->check(CLI::Validator(problem_with_accuracy, ""));
+  add_common_options(command, arguments->common);
+  command.footer("example: clerestory mesh data/scenes/house.json -o patches.vtp --max-element 0.25");
+  command.callback([arguments, &task] {
+    task = [arguments] {
+      return run(arguments->common, [&](Console& console) { return mesh_command(*arguments, console); });
+    };
+  });
+}
+
+}  // namespace clerestory

@@ -1,0 +1,245 @@
+// clerestory solve: the main job, from a model and its light to a picture of where the light goes.
+
+#include <chrono>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/run.h"
+#include "apps/scene_checks.h"
+#include "apps/settings.h"
+#include "apps/solve_report.h"
+#include "apps/wording.h"
+#include "io/atomic_file.h"
+#include "io/read_sensors.h"
+#include "io/write_result.h"
+#include "io/write_sensors.h"
+#include "meshing/make_lightmap.h"
+#include "solver/gather.h"
+#include "solver/model/error.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+struct Arguments {
+  CommonArguments common;
+  SolveArguments solve;
+  ReadOptions read;
+  std::string input, output, sensors, sensors_output;
+};
+
+using Clock = std::chrono::steady_clock;
+
+/// Adds the seconds since it was made, or since the last call, to `sum`.
+class Lap {
+ public:
+  void add_to(double& sum) {
+    const auto now = Clock::now();
+    sum += std::chrono::duration<double>(now - begin_).count();
+    begin_ = now;
+  }
+
+ private:
+  Clock::time_point begin_ = Clock::now();
+};
+
+/// The data flow of the README: surfaces -> patches -> solution -> field on vertices and at sensors -> its error.
+Solved solve_scene(const Scene& scene, const Settings& settings, std::span<const SensorPoint> sensors,
+                   RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
+  Lap lap;
+  auto [patches, repairs] = build_patches(scene, settings.mesh, monitor);
+  patches.channels = settings.channels;
+  lap.add_to(seconds.mesh);
+
+  const RayScene rays(patches);
+  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  const Problem problem{patches, rays, lights};
+  LitSides lit_sides = find_lit_sides(problem, settings.solve.seed);
+  make_patches(patches, lit_sides.wanted);
+  if (patches.patch_count() == 0)
+    throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
+  warn_about_places(problem, scene, sensors, console);
+  lap.add_to(seconds.build);
+
+  const double direct_before = console.seconds_in("direct");
+  Solution solution = solve(problem, settings.solve, monitor);
+  const double direct = console.seconds_in("direct") - direct_before;
+  seconds.direct += direct;
+  seconds.gather -= direct;
+  lap.add_to(seconds.gather);
+
+  VertexLightmap lightmap = make_lightmap(patches);
+  average_to_points(patches, solution.E, lightmap);
+  if (settings.solve.accuracy != Accuracy::draft && !monitor.should_stop())
+    solution.rays += gather_at_points(problem, solution, lightmap, settings.solve, monitor);
+  if (monitor.should_stop() && solution.stop == StopReason::converged)
+    solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+
+  // Every sensor gets its row, however little time there is.
+  SolveOptions sensor_options = settings.solve;
+  if (monitor.should_stop()) sensor_options.accuracy = Accuracy::draft;
+  PointIrradiance at_sensors =
+      gather_at_sensors(problem, solution, sensors, sensor_options, {.progress = monitor.progress});
+  solution.rays += at_sensors.rays;
+  lap.add_to(seconds.reconstruct);
+
+  std::optional<MeasuredError> error, error_sensors;
+  if (!monitor.should_stop()) error = measure_error(problem, lightmap, settings.solve, monitor);
+  if (!monitor.should_stop() && !sensors.empty())
+    error_sensors = measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, monitor);
+  lap.add_to(seconds.measure);
+  return {std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),
+          std::move(at_sensors.E), error,   error_sensors};
+}
+
+bool meets(const Solved& solved, double target) { return solved.error && solved.error->rms_relative <= target; }
+
+/// Solves once, or as often as the target error asks for; settings end as they were for the result returned.
+Solved solve_to_target(const Scene& scene, Settings& settings, std::span<const SensorPoint> sensors,
+                       RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
+  constexpr int kRounds = 5;  // the last has 16 times the elements of the first
+  Solved best = solve_scene(scene, settings, sensors, seconds, console, monitor);
+  if (!settings.target_error) return best;
+  for (int round = 1; round < kRounds && !meets(best, *settings.target_error) && !monitor.should_stop(); ++round) {
+    Settings finer = settings;
+    finer.tighten(best.repairs.max_element);
+    console.note("error " + percent(best.error ? best.error->rms_relative : 1) + ", asked for " +
+                 percent(*settings.target_error) + ": again with elements of " + rounded(*finer.mesh.max_element) +
+                 " m and twice the rays");
+    try {
+      Solved next = solve_scene(scene, finer, sensors, seconds, console, monitor);
+      if (!next.error || (best.error && next.error->rms_relative > best.error->rms_relative)) {
+        best.solution.stop = next.solution.stop;
+        break;
+      }
+      best = std::move(next);
+      settings = finer;
+    } catch (const InputError& e) {
+      console.warn(std::string("the target error would need more than this: ") + e.what());
+      break;
+    }
+  }
+  return best;
+}
+
+/// Illuminance on open ground [lx], when daylight factors have a meaning: a sky and no sun.
+std::optional<double> daylight_reference(const Lights& lights) {
+  if (!lights.sky || !lights.suns.empty()) return {};
+  const double reference = photometric(lights.sky->horizontal_irradiance);
+  return reference > 0 ? std::optional(reference) : std::nullopt;
+}
+
+ExitCode exit_code(const Solved& solved, const Settings& settings) {
+  if (solved.solution.stop == StopReason::interrupted) return kInterrupted;
+  if (solved.solution.stop != StopReason::converged) return kAccuracyNotReached;
+  if (settings.target_error && !meets(solved, *settings.target_error)) return kAccuracyNotReached;
+  return kDone;
+}
+
+void say_why(ExitCode code, const Solved& solved, const Settings& settings, Console& console) {
+  if (code == kInterrupted) console.warn("interrupted; what was solved so far is written.");
+  if (code != kAccuracyNotReached) return;
+  if (solved.solution.stop == StopReason::time_limit)
+    console.warn("the time limit of " + rounded(settings.time_limit.value_or(0)) +
+                 " s came before the end; the result so far is written.");
+  else if (solved.solution.stop == StopReason::iteration_limit)
+    console.warn("the method stopped before it converged, at a residual of " + percent(solved.solution.residual) +
+                 "; the result so far is written.");
+  else
+    console.warn("the target error of " + percent(*settings.target_error) + " was not reached" +
+                 (solved.error ? ", only " + percent(solved.error->rms_relative) : "") + "; the result is written.");
+}
+
+ExitCode solve_command(const Arguments& arguments, Console& console) {
+  const auto start = Clock::now();
+  check_writable(arguments.output);
+  RunReport report = new_report(arguments.input);
+
+  Lap lap;
+  Scene scene = read_scene(arguments.input, arguments.read);
+  if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
+  Settings settings = effective_settings(arguments.solve, scene);
+  if (settings.channels == 1) make_grey(scene);
+  warn_about_scene(scene, console);
+  require_light(scene);
+  const std::vector<SensorPoint> sensors = all_sensor_points(scene);
+  std::filesystem::path sensors_output = arguments.sensors_output;
+  if (sensors_output.empty())
+    sensors_output = std::filesystem::path(arguments.output).replace_extension(".sensors.csv");
+  if (!sensors.empty()) check_writable(sensors_output);
+  if (sensors.empty() && !arguments.sensors_output.empty())
+    throw InputError("--sensors-out " + arguments.sensors_output +
+                     ": there are no sensors to write; give --sensors POINTS.csv, or \"sensors\" in the scene file.");
+  lap.add_to(report.seconds.read);
+
+  const auto deadline =
+      settings.time_limit
+          ? start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*settings.time_limit))
+          : Clock::time_point::max();
+  const Solved solved = solve_to_target(scene, settings, sensors, report.seconds, console, console.monitor(deadline));
+  for (const std::string& line : solved.solution.log) console.note(line);
+
+  Lap writing;
+  report.settings = as_figures(settings, arguments.read);
+  report.threads = arguments.common.threads;
+  fill_report(report, scene, solved);
+  write_result(arguments.output, solved.patches, solved.lightmap, solved.solution, daylight_reference(scene.lights),
+               report);
+  if (!sensors.empty()) write_sensors(sensors_output, sensors, solved.sensor_E);
+  writing.add_to(report.seconds.write);
+
+  const ExitCode code = exit_code(solved, settings);
+  say_why(code, solved, settings, console);
+  report.seconds.total = console.elapsed();
+  report.peak_memory_bytes = peak_memory_bytes();
+  report.warnings = console.warnings();
+  if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
+  say_summary(report, solved, console);
+  console.say("  results " + arguments.output + (sensors.empty() ? "" : ", " + sensors_output.string()) +
+              (arguments.common.report.empty() ? "" : ", " + arguments.common.report));
+  return code;
+}
+
+}  // namespace
+
+void add_solve_command(CLI::App& program, Task& task) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *program.add_subcommand("solve", "read, mesh, solve, write: the main job");
+  add_input_options(command, arguments->input, arguments->read);
+  command.add_option("-o,--output", arguments->output, "the result, for ParaView")->type_name("OUT.vtp")->required();
+  require_extension(command, "--output", ".vtp");
+  SolveArguments& s = arguments->solve;
+  command
+      .add_option("--method", s.method,
+                  "progressive, gauss-seidel, jacobi, or path, the unbiased reference "
+                  "(default: progressive)")
+      ->type_name("NAME")
+      ->check(CLI::Validator(problem_with_method, ""));
+  command.add_option("--accuracy", s.accuracy, "draft, standard or fine (default: standard)")
+      ->type_name("NAME")
+      ->check(CLI::Validator(problem_with_accuracy, ""));
+  add_positive_option(command, "--target-error", s.target_error, "SHARE",
+                      "go on until the measured RMS relative error is below this, 0.02 for 2 %");
+  add_positive_option(command, "--time-limit", s.time_limit, "S", "stop solving after so many seconds");
+  add_positive_option(command, "--max-element", s.max_element, "M",
+                      "longest element edge in metres (default: by accuracy and size)");
+  command.add_option("--seed", s.seed, "of all random numbers (default: 1)")->type_name("N");
+  command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")
+      ->type_name("POINTS.csv");
+  command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")
+      ->type_name("OUT.csv");
+  command.add_option("--channels", s.channels, "1 = grey, 3 = colour (default: what the scene needs)")
+      ->type_name("N")
+      ->check(CLI::IsMember({1, 3}).name(""));
+  command.add_flag("--grey", s.grey, "solve in one channel, the same as --channels 1")->excludes("--channels");
+  add_common_options(command, arguments->common);
+  command.footer("example: clerestory solve data/scenes/office.json -o office.vtp --accuracy fine");
+  command.callback([arguments, &task] {
+    task = [arguments] {
+      return run(arguments->common, [&](Console& console) { return solve_command(*arguments, console); });
+    };
+  });
+}
+
+}  // namespace clerestory

@@ -1,0 +1,88 @@
+#include "apps/scene_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "apps/wording.h"
+#include "solver/gather.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+/// Share of 256 directions, spread evenly over the sphere, in which nothing is met.
+double open_share(const Problem& problem, const Vec3& position) {
+  constexpr int kDirections = 256;
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+  int escaped = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z), phi = i * golden_angle;
+    if (problem.rays.first_hit(problem.patches, {position, {r * std::cos(phi), r * std::sin(phi), z}}).escaped())
+      ++escaped;
+  }
+  return double(escaped) / kDirections;
+}
+
+void warn_about_luminaire(const Problem& problem, const std::string& name, const Vec3& position, Console& console) {
+  const double open = open_share(problem, position);
+  if (open <= 0.6) return;
+  const Vec3 p = position + problem.patches.origin;
+  console.warn("luminaire '" + name + "' at (" + rounded(p.x, 4) + ", " + rounded(p.y, 4) + ", " + rounded(p.z, 4) +
+               ") stands outside every room: " + percent(open) + " of the directions around it meet nothing.");
+}
+
+/// "rows 3, 7, 8 and 12 more"
+std::string row_list(const std::vector<std::size_t>& rows) {
+  constexpr std::size_t kShown = 10;
+  std::string text = rows.size() == 1 ? "row " : "rows ";
+  for (std::size_t i = 0; i < std::min(rows.size(), kShown); ++i) text += (i ? ", " : "") + std::to_string(rows[i] + 1);
+  if (rows.size() > kShown) text += " and " + grouped(rows.size() - kShown) + " more";
+  return text;
+}
+
+}  // namespace
+
+bool has_light(const Scene& scene) {
+  const Lights& lights = scene.lights;
+  const auto shines = [](const Spectrum& s) { return s.max() > 0; };
+  if (std::any_of(lights.points.begin(), lights.points.end(), [&](const auto& l) { return shines(l.power); }) ||
+      std::any_of(lights.spots.begin(), lights.spots.end(), [&](const auto& l) { return shines(l.intensity); }) ||
+      std::any_of(lights.suns.begin(), lights.suns.end(), [&](const auto& l) { return shines(l.normal_irradiance); }) ||
+      (lights.sky && shines(lights.sky->horizontal_irradiance)))
+    return true;
+  const auto& used = scene.polygons.material;
+  return std::any_of(used.begin(), used.end(), [&](MaterialId m) { return scene.materials[m].emits(); });
+}
+
+void require_light(const Scene& scene) {
+  if (has_light(scene)) return;
+  throw InputError(scene.file +
+                   ": there is no light at all: no material that emits, no luminaire, no sky, no sun. Add a sky with "
+                   "--sky cie-overcast:10000, or in a scene file give a material \"luminous_exitance\", or add "
+                   "\"luminaires\", \"sky\" or \"sun\".");
+}
+
+std::vector<SensorPoint> all_sensor_points(const Scene& scene) {
+  std::vector<SensorPoint> points;
+  for (const SensorSet& set : scene.sensors) points.insert(points.end(), set.points.begin(), set.points.end());
+  return points;
+}
+
+void warn_about_scene(const Scene& scene, Console& console) {
+  for (const std::string& warning : scene.warnings) console.warn(warning);
+  for (const std::string& name : scene.unused_materials)
+    console.warn(scene.file + ": materials '" + name + "' matches no material of the model.");
+}
+
+void warn_about_places(const Problem& problem, const Scene& scene, std::span<const SensorPoint> sensors,
+                       Console& console) {
+  for (const auto& l : problem.lights.points) warn_about_luminaire(problem, l.name, l.position, console);
+  for (const auto& l : problem.lights.spots) warn_about_luminaire(problem, l.name, l.position, console);
+  const auto buried = buried_points(problem, sensors);
+  if (!buried.empty())
+    console.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +
+                 ") inside a solid or on a surface; what arrives there means little.");
+}
+
+}  // namespace clerestory

@@ -1,0 +1,28 @@
+#pragma once
+// What a person would notice at a look and a solver would not.
+
+#include <span>
+
+#include "apps/console.h"
+#include "solver/model/scene.h"
+#include "solver/problem.h"
+
+namespace clerestory {
+
+/// Whether anything that is used in the scene gives light.
+bool has_light(const Scene& scene);
+
+/// throws  InputError that says how to add light, when nothing in the scene gives any.
+void require_light(const Scene& scene);
+
+/// Everything sensors of the scene ask for, one set after the other.
+std::vector<SensorPoint> all_sensor_points(const Scene& scene);
+
+/// What the reader assumed or left out, and material rules that match nothing.
+void warn_about_scene(const Scene& scene, Console& console);
+
+/// Luminaires outside every room and sensors inside walls.
+void warn_about_places(const Problem& problem, const Scene& scene, std::span<const SensorPoint> sensors,
+                       Console& console);
+
+}  // namespace clerestory

@@ -1,0 +1,77 @@
+#include "apps/solve_report.h"
+
+#include <algorithm>
+
+#include "apps/wording.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+std::optional<RunReport::ErrorFigures> figures_of(const std::optional<MeasuredError>& e) {
+  if (!e) return {};
+  return RunReport::ErrorFigures{e->rms_relative, e->p95_relative, e->samples, e->confidence};
+}
+
+std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) {
+  std::vector<std::string> out;
+  if (s.patches.channels == 1) out.push_back("colour: everything is grey, one channel is solved");
+  if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
+  if (scene.lights.points.empty() && scene.lights.spots.empty()) out.push_back("luminaires: the scene has none");
+  const auto& m = s.patches.materials;
+  if (std::none_of(m.begin(), m.end(), [](const Material& x) { return x.kind == MaterialKind::glass; }))
+    out.push_back("glass: the scene has none");
+  if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
+  if (s.lit_sides.lamp_interiors)
+    out.push_back(counted(s.lit_sides.lamp_interiors, "emitting side") + " that shine on nothing but their own lamp");
+  return out;
+}
+
+std::string error_line(const MeasuredError& e) {
+  return percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), 95 % of points within " +
+         percent(e.p95_relative) + ", measured at " + counted(e.samples, "point");
+}
+
+}  // namespace
+
+void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
+  r.method = s.solution.method;
+  r.counts.triangles = s.patches.triangle_count();
+  r.counts.elements = s.patches.patch_count();
+  r.counts.dark_sides = s.lit_sides.dark_sides;
+  r.counts.points = s.lightmap.position.size();
+  r.counts.sensors = s.sensor_E.size();
+  r.counts.rays = s.solution.rays;
+  r.iterations = s.solution.iterations;
+  r.residual = s.solution.residual;
+  r.energy = s.solution.energy;
+  r.stop = s.solution.stop;
+  r.repairs = s.repairs;
+  r.error = figures_of(s.error);
+  r.error_sensors = figures_of(s.error_sensors);
+  r.left_out = what_was_left_out(scene, s);
+}
+
+void say_summary(const RunReport& r, const Solved& s, Console& console) {
+  const auto& t = r.seconds;
+  const Field& E = s.solution.E;
+  double flux = 0, largest = 0;
+  for (std::size_t i = 0; i < E.size(); ++i) {
+    flux += photometric(E[i]) * s.patches.area[i];
+    largest = std::max(largest, photometric(E[i]));
+  }
+  console.say(r.input + ": " + counted(r.counts.elements, "element") + " on " +
+              counted(r.counts.triangles, "triangle") + ", " + std::to_string(s.patches.channels) +
+              (s.patches.channels == 1 ? " channel" : " channels") + ", method " + r.method);
+  console.say("  light   mean illuminance " + rounded(flux / s.patches.total_area()) + " lx, largest " +
+              rounded(largest) + " lx");
+  console.say("  energy  emitted " + rounded(r.energy.emitted, 4) + " W, absorbed " + rounded(r.energy.absorbed, 4) +
+              " W, escaped " + rounded(r.energy.escaped, 4) + " W, imbalance " + percent(r.energy.imbalance()));
+  console.say("  error   " + (s.error ? error_line(*s.error) : std::string("not measured")));
+  if (s.error_sensors) console.say("  sensors " + error_line(*s.error_sensors));
+  console.say("  time    " + duration(t.total) + " (read " + duration(t.read) + ", mesh " + duration(t.mesh) +
+              ", solve " + duration(t.build + t.direct + t.refine + t.gather) + ", show " + duration(t.reconstruct) +
+              ", measure " + duration(t.measure) + "), memory " + bytes(r.peak_memory_bytes));
+}
+
+}  // namespace clerestory

@@ -1,0 +1,31 @@
+#pragma once
+// What is told about a solve: figures for the report, lines for people.
+
+#include "apps/console.h"
+#include "io/run_report.h"
+#include "solver/lit_sides.h"
+#include "solver/measured_error.h"
+#include "solver/model/patch_set.h"
+#include "solver/model/scene.h"
+#include "solver/model/solution.h"
+#include "solver/model/vertex_lightmap.h"
+
+namespace clerestory {
+
+/// All that a solve leaves behind.
+struct Solved {
+  PatchSet patches;
+  MeshReport repairs;
+  LitSides lit_sides;
+  Solution solution;
+  VertexLightmap lightmap;
+  Field sensor_E;
+  std::optional<MeasuredError> error, error_sensors;
+};
+
+void fill_report(RunReport& report, const Scene& scene, const Solved& solved);
+
+/// Elements, time, energy balance and measured error, as lines on standard output.
+void say_summary(const RunReport& report, const Solved& solved, Console& console);
+
+}  // namespace clerestory

@@ -12,9 +12,18 @@ namespace clerestory {
 
 enum class Up { y, z };
 
+/// A material as the model has it, and what was assumed about it; the assumptions matter only where the scene file
+/// says nothing of the material.
+struct ModelMaterial {
+  Material material;
+  bool described = true;       ///< false: the model has only its name, or not even that
+  bool textured = false;       ///< a texture was left out
+  bool unitless_glow = false;  ///< its emission had no unit and was taken as radiance [W/(m2 sr)]
+};
+
 struct Model {
   PolygonSoup polygons;
-  std::vector<Material> materials;
+  std::vector<ModelMaterial> materials;
   std::vector<std::string> surfaces;
   Lights lights;
   std::vector<std::string> warnings;      ///< without the file's name
@@ -22,10 +31,10 @@ struct Model {
   std::optional<Up> up;                   ///< when the file says its axes
 };
 
-inline constexpr double kLargestCoordinate = 1e12;  ///< farther than this a coordinate is a mistake
+inline constexpr std::string_view kDefaultMaterial = "default";  ///< name where the model has none
+inline constexpr double kLargestCoordinate = 1e12;               ///< farther than this a coordinate is a mistake
 /// A model's white (Kd 1) reflects this much: nothing real reflects all, and closed white rooms would never darken.
 inline constexpr double kWhitestReflectance = 0.99;
-inline constexpr double kDefaultReflectance = 0.5;
 
 /// Reads a model by the reader of its extension.
 ///
@@ -35,12 +44,9 @@ Model read_model(const std::filesystem::path& file);
 Model read_obj(const std::filesystem::path& file);
 
 /// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`.
-std::vector<Material> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings);
+std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 /// Takes a transparent material (opacity below 1/2) as glass that passes what it does not cover.
 void apply_opacity(Material& material, double opacity);
-
-/// Brings reflectances of 1 and more below 1, and says so, once; says which materials became glass.
-void settle_materials(Model& model);
 
 }  // namespace clerestory

@@ -1,5 +1,6 @@
 // Wavefront MTL: newmtl, Kd, Ke, d and Tr. Source: Ramey, Rose & Tyerman, "MTL material format", 1995.
 
+#include <algorithm>
 #include <numbers>
 
 #include "io/formats/model.h"
@@ -32,10 +33,10 @@ std::optional<Spectrum> read_colour(std::string_view rest, const std::string& wh
 
 }  // namespace
 
-std::vector<Material> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   const std::string bytes = read_input_file(file, kMaxBytes);
   const std::string name = short_name(file);
-  std::vector<Material> materials;
+  std::vector<ModelMaterial> materials;
   std::vector<double> opacity, dissolve;  // of each material; dissolve -1: not given
   std::size_t line_number = 0;
   for (std::size_t begin = 0; begin < bytes.size();) {
@@ -46,7 +47,7 @@ std::vector<Material> read_mtl(const std::filesystem::path& file, std::vector<st
     const std::string_view key = next_word(rest);
     if (key.empty() || key[0] == '#') continue;
     if (key == "newmtl") {
-      Material& material = materials.emplace_back();
+      Material& material = materials.emplace_back().material;
       material.name = trimmed(rest);
       opacity.push_back(1);
       dissolve.push_back(-1);
@@ -56,7 +57,8 @@ std::vector<Material> read_mtl(const std::filesystem::path& file, std::vector<st
       if (key == "Kd" || key == "Ke") throw InputError(text(where, key, " stands before the first newmtl"));
       continue;
     }
-    Material& material = materials.back();
+    ModelMaterial& current = materials.back();
+    Material& material = current.material;
     if (key == "Kd" || key == "Ke") {
       const std::optional<Spectrum> colour = read_colour(rest, where);
       if (!colour) {
@@ -65,7 +67,8 @@ std::vector<Material> read_mtl(const std::filesystem::path& file, std::vector<st
       } else if (key == "Kd") {
         material.reflectance = *colour;
       } else {
-        material.exitance = std::numbers::pi * *colour;  // Ke is the radiance [W/(m2 sr)] that a renderer shows
+        material.exitance = std::numbers::pi * *colour;
+        current.unitless_glow = !material.exitance.is_black();
       }
     } else if (key == "d" || key == "Tr") {
       std::string_view word = next_word(rest);
@@ -76,14 +79,21 @@ std::vector<Material> read_mtl(const std::filesystem::path& file, std::vector<st
       }
       (key == "d" ? dissolve : opacity).back() = key == "d" ? *value : 1 - *value;
     } else if (key == "map_Kd") {
-      warnings.push_back(text(where, "textures are not read; '", material.name, "' reflects its Kd evenly"));
+      current.textured = true;
     }
   }
   // d wins: writers do not agree on whether Tr 1 is clear or solid.
   for (std::size_t m = 0; m < materials.size(); ++m) {
-    apply_opacity(materials[m], dissolve[m] >= 0 ? dissolve[m] : opacity[m]);
+    apply_opacity(materials[m].material, dissolve[m] >= 0 ? dissolve[m] : opacity[m]);
   }
   return materials;
+}
+
+void apply_opacity(Material& material, double opacity) {
+  if (!(opacity < 0.5)) return;
+  material.kind = MaterialKind::glass;
+  material.transmittance = Spectrum(1 - std::max(opacity, 0.0));
+  material.exitance = Spectrum(0.0);
 }
 
 }  // namespace clerestory

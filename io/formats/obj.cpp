@@ -14,7 +14,6 @@ namespace clerestory {
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = 8ull << 30;
-constexpr std::string_view kDefaultMaterial = "default";
 
 /// Lines of a text, joined where one ends in a backslash.
 class Lines {
@@ -128,13 +127,7 @@ class ObjReader {
       return;
     }
     if (!surface_.valid()) start_surface({});
-    if (!material_.valid()) {
-      ++bare_faces_;
-      material_ = material_named(kDefaultMaterial);
-      bare_material_ = true;
-    } else if (bare_material_) {
-      ++bare_faces_;
-    }
+    if (!material_.valid()) material_ = material_named(kDefaultMaterial);
     PolygonSoup& soup = model_.polygons;
     for (const std::uint32_t vertex : face_) {
       if (place_[vertex] == kUnused) {
@@ -155,14 +148,15 @@ class ObjReader {
 
   MaterialId material_named(std::string_view name) {
     const auto [at, is_new] = material_by_name_.try_emplace(std::string(name), MaterialId(model_.materials.size()));
-    if (is_new) model_.materials.emplace_back().name = name;
+    if (is_new) {
+      ModelMaterial& material = model_.materials.emplace_back();
+      material.material.name = name;
+      material.described = false;
+    }
     return at->second;
   }
 
-  void start_material(std::string_view name) {
-    material_ = material_named(name.empty() ? kDefaultMaterial : name);
-    bare_material_ = false;
-  }
+  void start_material(std::string_view name) { material_ = material_named(name.empty() ? kDefaultMaterial : name); }
 
   /// One name with blanks in it, or several names.
   void read_libraries(std::string_view names) {
@@ -178,26 +172,16 @@ class ObjReader {
       model_.warnings.push_back(text("material file '", quotable(library.string()), "' is missing"));
       return;
     }
-    for (Material& material : read_mtl(library, model_.warnings)) described_.try_emplace(material.name, material);
+    for (ModelMaterial& material : read_mtl(library, model_.warnings)) {
+      described_.try_emplace(material.material.name, material);
+    }
   }
 
   /// Materials get what the libraries say, wherever in the file those were named.
   void finish() {
-    std::string missing;
-    for (Material& material : model_.materials) {
-      const auto found = described_.find(material.name);
-      if (found != described_.end()) {
-        material = found->second;
-      } else if (!(material.name == kDefaultMaterial && bare_faces_ > 0) && missing.size() < 200) {
-        missing += (missing.empty() ? "'" : ", '") + quotable(material.name) + "'";
-      }
-    }
-    if (!missing.empty()) {
-      model_.warnings.push_back(text("no material file describes ", missing, "; reflectance 0.5 is assumed"));
-    }
-    if (bare_faces_ > 0) {
-      model_.warnings.push_back(
-          text(bare_faces_, " faces have no material; they are called 'default', reflectance 0.5"));
+    for (ModelMaterial& material : model_.materials) {
+      const auto found = described_.find(material.material.name);
+      if (found != described_.end()) material = found->second;
     }
     if (short_faces_ > 0)
       model_.warnings.push_back(text(short_faces_, " faces with fewer than three corners are left out"));
@@ -214,11 +198,10 @@ class ObjReader {
   std::vector<std::uint32_t> face_;
   std::unordered_map<std::string, SurfaceId> surface_by_name_;
   std::unordered_map<std::string, MaterialId> material_by_name_;
-  std::unordered_map<std::string, Material> described_;
+  std::unordered_map<std::string, ModelMaterial> described_;
   SurfaceId surface_;
   MaterialId material_;
-  bool bare_material_ = false;
-  std::size_t line_ = 0, bare_faces_ = 0, short_faces_ = 0, free_forms_ = 0;
+  std::size_t line_ = 0, short_faces_ = 0, free_forms_ = 0;
 };
 
 }  // namespace

@@ -7,12 +7,8 @@ namespace clerestory {
 
 Model read_model(const std::filesystem::path& file) {
   const std::string extension = to_lower(file.extension().string());
-  Model model = [&] {
-    if (extension == ".obj") return read_obj(file);
-    throw InputError(text(short_name(file), ": '", quotable(extension), "' is not a model format; known are .obj"));
-  }();
-  settle_materials(model);
-  return model;
+  if (extension == ".obj") return read_obj(file);
+  throw InputError(text(short_name(file), ": '", quotable(extension), "' is not a model format; known are .obj"));
 }
 
 }  // namespace clerestory

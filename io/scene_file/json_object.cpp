@@ -65,8 +65,8 @@ double checked_number(const Json& value, const std::string& place, const Range& 
   if (!value.is_number()) refuse_type(place, "a number", value);
   const double x = value.get<double>();
   if (!range.contains(x)) {
-    throw InputError(
-        text(place, " = ", x, " is outside ", range.words(), range.advice.empty() ? "" : "; ", range.advice, range.advice.empty() ? "" : "."));
+    throw InputError(text(place, " = ", x, " is outside ", range.words(), range.advice.empty() ? "" : "; ",
+                          range.advice, range.advice.empty() ? "" : "."));
   }
   return x;
 }

@@ -137,15 +137,16 @@ std::vector<MaterialRule> read_material_rules(const Json& materials, const std::
   return rules;
 }
 
-void apply_rules(std::vector<MaterialRule>& rules, Material& material) {
+bool apply_rules(std::vector<MaterialRule>& rules, Material& material) {
   for (MaterialRule& rule : rules) {
     if (!matches(rule.pattern, material.name)) continue;
     rule.used.push_back(material.name);
     const std::string name = material.name;
     material = rule.material;
     material.name = name;
-    return;
+    return true;
   }
+  return false;
 }
 
 }  // namespace clerestory

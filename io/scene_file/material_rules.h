@@ -34,7 +34,7 @@ bool matches(std::string_view pattern, std::string_view name);
 std::vector<MaterialRule> read_material_rules(const Json& materials, const std::string& file_name,
                                               ChannelCount& channels, std::vector<std::string>& warnings);
 
-/// The first rule that matches says all about the material but its name; without one it stays as it is.
-void apply_rules(std::vector<MaterialRule>& rules, Material& material);
+/// The first rule that matches says all about the material but its name. False: none did, and it stays as it is.
+bool apply_rules(std::vector<MaterialRule>& rules, Material& material);
 
 }  // namespace clerestory

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "io/input_file.h"
+#include "io/scene_file/own_materials.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 
@@ -45,38 +46,44 @@ std::string unused_name(const std::string& name, const std::string& stem, const 
 }
 
 /// For each material of the model its id in the scene; one that is there already, the same in all it says, is shared.
-std::vector<MaterialId> add_materials(Scene& scene, Model& model, const std::string& stem,
-                                      const MaterialChange& change) {
+/// Materials and surfaces that no face carries are left out.
+std::vector<MaterialId> add_materials(Scene& scene, const Model& model, const std::filesystem::path& file,
+                                      const MaterialOverride& by_scene_file) {
   std::vector<bool> carried(model.materials.size(), false);
   for (const MaterialId m : model.polygons.material) carried[m] = true;
   std::set<std::string> taken;
   for (const Material& material : scene.materials) taken.insert(material.name);
-  const std::size_t before = scene.materials.size();
+  const auto before = static_cast<std::ptrdiff_t>(scene.materials.size());
+  OwnMaterials own;
   std::vector<MaterialId> id(model.materials.size());
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
     if (!carried[m]) continue;
-    Material& material = model.materials[m];
-    change(material);
-    const auto end = scene.materials.begin() + static_cast<std::ptrdiff_t>(before);
-    const auto same = std::find(scene.materials.begin(), end, material);
-    if (same != end) {
+    Material material = model.materials[m].material;
+    if (!by_scene_file(material)) material = own.settle(model.materials[m]);
+    const auto others_end = scene.materials.begin() + before;
+    const auto same = std::find(scene.materials.begin(), others_end, material);
+    if (same != others_end) {
       id[m] = MaterialId(static_cast<std::size_t>(same - scene.materials.begin()));
       continue;
     }
-    material.name = unused_name(material.name, stem, taken);
+    material.name = unused_name(material.name, file.stem().string(), taken);
     taken.insert(material.name);
     id[m] = MaterialId(scene.materials.size());
     scene.materials.push_back(std::move(material));
   }
+  for (const std::string& warning : own.warnings()) scene.warnings.push_back(short_name(file) + ": " + warning);
   return id;
 }
 
 std::vector<SurfaceId> add_surfaces(Scene& scene, const Model& model, const std::string& stem) {
+  std::vector<bool> carried(model.surfaces.size(), false);
+  for (const SurfaceId s : model.polygons.surface) carried[s] = true;
   std::set<std::string> taken(scene.surfaces.begin(), scene.surfaces.end());
-  std::vector<SurfaceId> id;
-  for (const std::string& name : model.surfaces) {
-    id.emplace_back(scene.surfaces.size());
-    scene.surfaces.push_back(unused_name(name, stem, taken));
+  std::vector<SurfaceId> id(model.surfaces.size());
+  for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
+    if (!carried[s]) continue;
+    id[s] = SurfaceId(scene.surfaces.size());
+    scene.surfaces.push_back(unused_name(model.surfaces[s], stem, taken));
     taken.insert(scene.surfaces.back());
   }
   return id;
@@ -121,8 +128,8 @@ std::optional<double> metres_of_unit(std::string_view unit) {
   return std::nullopt;
 }
 
-void place_model(Scene& scene, Model model, const std::filesystem::path& file, const Placement& placement,
-                 const MaterialChange& change) {
+void place_model(Scene& scene, const Model& model, const std::filesystem::path& file, const Placement& placement,
+                 const MaterialOverride& by_scene_file) {
   const std::string name = short_name(file);
   for (const std::string& warning : model.warnings) scene.warnings.push_back(name + ": " + warning);
   if (model.metres_per_unit && placement.metres_per_unit &&
@@ -139,7 +146,7 @@ void place_model(Scene& scene, Model model, const std::filesystem::path& file, c
   const bool mirrored = place.determinant() < 0;
 
   const std::string stem = file.stem().string();
-  const std::vector<MaterialId> material = add_materials(scene, model, stem, change);
+  const std::vector<MaterialId> material = add_materials(scene, model, file, by_scene_file);
   const std::vector<SurfaceId> surface = add_surfaces(scene, model, stem);
   add_lights(scene, model.lights, place);
 

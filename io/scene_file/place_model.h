@@ -20,11 +20,11 @@ struct Placement {
 /// Metres of "m", "cm", "mm", "ft" or "in"; nothing for other words.
 std::optional<double> metres_of_unit(std::string_view unit);
 
-/// What becomes of a model's material; called once for each that carries faces, before names are made unique.
-using MaterialChange = std::function<void(Material&)>;
+/// Gives a material what the scene file says about its name, and returns whether it says anything.
+using MaterialOverride = std::function<bool(Material&)>;
 
 /// throws  InputError naming the surface whose coordinates leave the representable range.
-void place_model(Scene& scene, Model model, const std::filesystem::path& file, const Placement& placement,
-                 const MaterialChange& change);
+void place_model(Scene& scene, const Model& model, const std::filesystem::path& file, const Placement& placement,
+                 const MaterialOverride& by_scene_file);
 
 }  // namespace clerestory

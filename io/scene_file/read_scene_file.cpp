@@ -72,7 +72,8 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     if (scene.polygons.face_count() + model->second.polygons.face_count() > kMaxFaces) {
       throw InputError(text(object.where(), ": more than ", kMaxFaces, " faces in one scene"));
     }
-    place_model(scene, model->second, model_file, placement, [&](Material& material) { apply_rules(rules, material); });
+    place_model(scene, model->second, model_file, placement,
+                [&](Material& material) { return apply_rules(rules, material); });
   }
 }
 

@@ -1,0 +1,54 @@
+#include "io/scene_file/own_materials.h"
+
+#include <algorithm>
+
+#include "io/text.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t kShown = 6;
+
+}  // namespace
+
+void NameList::add(const std::string& name) {
+  if (++count_ <= kShown) list_ += (list_.empty() ? "'" : ", '") + quotable(name) + "'";
+}
+
+std::string NameList::str() const { return count_ > kShown ? text(list_, " and ", count_ - kShown, " more") : list_; }
+
+Material OwnMaterials::settle(const ModelMaterial& own) {
+  Material material = own.material;
+  if (!own.described) undescribed_.add(material.name);
+  if (own.textured) textured_.add(material.name);
+  if (own.unitless_glow) glowing_.add(material.name);
+  if (material.kind == MaterialKind::glass) glass_.add(material.name);
+  if (material.reflectance.max() >= 1) {
+    if (material.kind != MaterialKind::glass) white_.add(material.name);
+    for (double& rho : material.reflectance.c) rho = std::min(rho, kWhitestReflectance);
+  }
+  return material;
+}
+
+std::vector<std::string> OwnMaterials::warnings() const {
+  std::vector<std::string> lines;
+  if (!undescribed_.empty()) {
+    lines.push_back(text("nothing describes the material ", undescribed_.str(), "; reflectance 0.5 is assumed"));
+  }
+  if (!white_.empty()) {
+    lines.push_back(text("reflectance 1 or more is taken as ", kWhitestReflectance, " for ", white_.str()));
+  }
+  if (!textured_.empty()) {
+    lines.push_back(text("textures are not read; ", textured_.str(), " takes its plain colour"));
+  }
+  if (!glass_.empty()) {
+    lines.push_back(
+        text(glass_.str(), " is transparent in the model and taken as glass that passes what it does not cover"));
+  }
+  if (!glowing_.empty()) {
+    lines.push_back(text(glowing_.str(), " glows without a unit; the model's value is taken as radiance in W/(m2 sr)"));
+  }
+  return lines;
+}
+
+}  // namespace clerestory

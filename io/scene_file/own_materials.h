@@ -1,0 +1,36 @@
+#pragma once
+// Materials that the scene file says nothing about keep what the model says, within reason and not in silence.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "io/formats/model.h"
+
+namespace clerestory {
+
+/// 'a', 'b', 'c' and 12 more
+class NameList {
+ public:
+  void add(const std::string& name);
+  bool empty() const { return count_ == 0; }
+  std::string str() const;
+
+ private:
+  std::string list_;
+  std::size_t count_ = 0;
+};
+
+/// Settles materials one by one and gathers what has to be said about them.
+class OwnMaterials {
+ public:
+  /// The model's own description, with reflectances brought below 1.
+  Material settle(const ModelMaterial& own);
+  /// One line for each kind of assumption.
+  std::vector<std::string> warnings() const;
+
+ private:
+  NameList undescribed_, white_, textured_, glass_, glowing_;
+};
+
+}  // namespace clerestory

@@ -5,7 +5,10 @@
 namespace clerestory {
 namespace {
 
-bool side_reflects_and_emits(const Material& material, Side side) { return side == kFront || material.sides == 2; }
+bool side_reflects_and_emits(const PatchSet& p, PatchId i) {
+  const TriangleId t = p.triangle[i];
+  return p.side[i] == kFront || p.materials[p.material(i)].sides == 2 || (!p.joined.empty() && p.joined[t]);
+}
 
 }  // namespace
 
@@ -44,14 +47,14 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   std::vector<double> emitting_area(p.materials.size(), 0.0);
   for (std::size_t i = 0; i < p.patch_count(); ++i) {
     const MaterialId m = p.material(PatchId{i});
-    if (side_reflects_and_emits(p.materials[m], p.side[i])) emitting_area[m] += p.area[i];
+    if (side_reflects_and_emits(p, PatchId{i})) emitting_area[m] += p.area[i];
   }
   p.rho = Field(p.patch_count(), p.channels);
   p.M = Field(p.patch_count(), p.channels);
   for (std::size_t i = 0; i < p.patch_count(); ++i) {
     const MaterialId m = p.material(PatchId{i});
     const Material& material = p.materials[m];
-    if (!side_reflects_and_emits(material, p.side[i])) continue;
+    if (!side_reflects_and_emits(p, PatchId{i})) continue;
     p.rho.set(i, material.reflectance);
     p.M.set(i, material.total_power ? *material.total_power / emitting_area[m] : material.exitance);
   }

@@ -28,6 +28,7 @@ struct PatchSet {
   std::vector<std::array<MaterialId, 2>> side_material;     ///< T, by Side
   std::vector<std::array<SurfaceId, 2>> side_surface;       ///< T, by Side
   std::vector<std::array<PatchId, 2>> side_patch;           ///< T, by Side; invalid where that side takes no part
+  std::vector<bool> joined;  ///< T, or empty for none: two faces lie here back to back, so the back is a front as well
 
   // N patches.
   std::vector<TriangleId> triangle;  ///< N
@@ -52,7 +53,7 @@ struct PatchSet {
 
 /// (Re)builds the patch arrays from the triangles: one patch for each side with wanted[2 * t + side], in that order;
 /// glass has none. Area, normal, rho and M follow from the materials; a material's total power is shared over the
-/// area of its emitting patches; the back of a one-sided material is black.
+/// area of its emitting patches; the back of a one-sided material is black, unless it is the front of a joined face.
 void make_patches(PatchSet& patches, const std::vector<bool>& wanted);
 
 }  // namespace clerestory

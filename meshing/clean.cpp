@@ -1,0 +1,177 @@
+#include "meshing/clean.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "meshing/box_tree.h"
+#include "meshing/point_index.h"
+#include "meshing/triangulate_polygon.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+/// Beyond this squares overflow; no building is there.
+bool is_usable(const Vec3& p) { return std::abs(p.x) < 1e100 && std::abs(p.y) < 1e100 && std::abs(p.z) < 1e100; }
+
+/// To a grid of 2^-32 of the model: far below every tolerance, far above rounding, so that the same model in another
+/// unit or place gives the same coordinates, and with them the same mesh.
+double on_grid(double x) { return std::nearbyint(x * 0x1p32) * 0x1p-32; }
+
+struct Welder {
+  explicit Welder(FaceComplex& c) : complex(c), index(c.vertices, kWeld) {}
+  std::uint32_t operator()(const Vec3& p, double tolerance) {
+    const std::uint32_t known = index.find(p, tolerance);
+    if (known != PointIndex::kNone) return known;
+    const auto id = static_cast<std::uint32_t>(complex.vertices.size());
+    complex.vertices.push_back(p);
+    index.add(id);
+    return id;
+  }
+  FaceComplex& complex;
+  PointIndex index;
+};
+
+bool has_area(const FaceComplex& complex, const std::array<std::uint32_t, 3>& c) {
+  if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return false;
+  const Vec3 a = complex.vertices[c[0]], b = complex.vertices[c[1]], d = complex.vertices[c[2]];
+  const double longest = std::max({length(b - a), length(d - b), length(a - d)});
+  const double height = length(cross(b - a, d - a)) / longest;
+  return height > std::min(kWeld, 1e-3 * longest);
+}
+
+/// Drops triangles that repeat one of the same material, wound the same way; counts those wound the other way.
+void drop_duplicates(FaceComplex& complex, MeshReport& report) {
+  struct Key {
+    std::array<std::uint32_t, 3> sorted;
+    bool odd;  ///< winding, against ascending corners
+    std::uint32_t material, face;
+    auto operator<=>(const Key&) const = default;
+  };
+  std::vector<Key> keys;
+  for (std::uint32_t f = 0; f < complex.faces.size(); ++f) {
+    auto c = complex.faces[f].corner;
+    std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+    const bool odd = c[1] > c[2];
+    if (odd) std::swap(c[1], c[2]);
+    keys.push_back({c, odd, complex.faces[f].material.value, f});
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<bool> drop(complex.faces.size());
+  for (std::size_t k = 0; k < keys.size();) {
+    std::size_t end = k, turned = 0, dropped = 0;
+    for (; end < keys.size() && keys[end].sorted == keys[k].sorted; ++end) {
+      const bool repeats =
+          end > k && keys[end].odd == keys[end - 1].odd && keys[end].material == keys[end - 1].material;
+      if (repeats) {
+        drop[keys[end].face] = true;
+        ++dropped;
+      } else if (keys[end].odd) {
+        ++turned;
+      }
+    }
+    report.duplicate_faces += dropped;
+    report.opposite_faces += std::min(turned, end - k - dropped - turned);
+    k = end;
+  }
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < complex.faces.size(); ++f)
+    if (!drop[f]) complex.faces[kept++] = complex.faces[f];
+  complex.faces.resize(kept);
+}
+
+}  // namespace
+
+FaceComplex clean(const Scene& scene, MeshReport& report) {
+  const PolygonSoup& soup = scene.polygons;
+  const std::size_t face_count = soup.face_count();
+  report.input_faces = face_count;
+  const auto corners_of = [&](std::size_t f) {
+    return std::span(soup.corner).subspan(soup.face_begin[f], soup.face_begin[f + 1] - soup.face_begin[f]);
+  };
+
+  std::vector<bool> usable(face_count);
+  Box extent;
+  for (std::size_t f = 0; f < face_count; ++f) {
+    const auto corners = corners_of(f);
+    usable[f] =
+        std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_usable(soup.vertices[v]); });
+    if (!usable[f])
+      ++report.non_finite_faces;
+    else
+      for (const std::uint32_t v : corners) extent.add(soup.vertices[v]);
+  }
+
+  FaceComplex complex;
+  if (extent.lower.x <= extent.upper.x) {
+    report.lower = extent.lower;
+    report.upper = extent.upper;
+    complex.origin = (extent.lower + extent.upper) / 2;
+    complex.size = length(extent.upper - extent.lower);
+  }
+  const bool has_size = complex.size > 0 && std::isfinite(complex.size);
+  if (!has_size) complex.size = 1;
+
+  // Vertices that hang on small faces weld with a small tolerance.
+  std::vector<Vec3> local(soup.vertices.size());
+  std::vector<double> tolerance(soup.vertices.size(), kWeld);
+  for (std::size_t f = 0; f < face_count; ++f) {
+    if (!usable[f]) continue;
+    Box box;
+    for (const std::uint32_t v : corners_of(f)) {
+      const Vec3 p = (soup.vertices[v] - complex.origin) / complex.size;
+      local[v] = {on_grid(p.x), on_grid(p.y), on_grid(p.z)};
+      box.add(local[v]);
+    }
+    // A face that is itself a point says nothing about the detail around it.
+    const double extent_of_face = length(box.upper - box.lower);
+    if (extent_of_face <= 1e-9) continue;
+    for (const std::uint32_t v : corners_of(f)) tolerance[v] = std::min(tolerance[v], kLocalShare * extent_of_face);
+  }
+
+  Welder weld(complex);
+  std::vector<std::uint32_t> welded(soup.vertices.size(), PointIndex::kNone);
+  std::size_t used = 0;
+  std::vector<Vec3> polygon;
+  std::vector<std::uint32_t> ids;
+  for (std::size_t f = 0; f < face_count && has_size; ++f) {
+    if (!usable[f]) continue;
+    ids.clear();
+    polygon.clear();
+    for (const std::uint32_t v : corners_of(f)) {
+      if (welded[v] == PointIndex::kNone) {
+        welded[v] = weld(local[v], tolerance[v]);
+        ++used;
+      }
+      if (!ids.empty() && ids.back() == welded[v]) continue;
+      ids.push_back(welded[v]);
+    }
+    while (ids.size() > 1 && ids.back() == ids.front()) ids.pop_back();
+    for (const std::uint32_t v : ids) polygon.push_back(complex.vertices[v]);
+    const PolygonTriangles pieces = triangulate_polygon(polygon);
+    for (const Vec3& p : pieces.crossings) ids.push_back(weld(p, kWeld));
+    bool any = false;
+    for (const auto& t : pieces.triangles) {
+      const std::array<std::uint32_t, 3> corner{ids[t[0]], ids[t[1]], ids[t[2]]};
+      if (!has_area(complex, corner)) continue;
+      complex.faces.push_back({corner, soup.material[f], soup.surface[f]});
+      any = true;
+    }
+    report.input_triangles += pieces.triangles.size();
+    if (!any) ++report.degenerate_faces;
+  }
+  if (!has_size) report.degenerate_faces = face_count - report.non_finite_faces;
+  report.welded_vertices = used > complex.vertices.size() ? used - complex.vertices.size() : 0;
+
+  if (complex.faces.empty())
+    throw InputError(scene.file + ": no face with an area is left of " + std::to_string(face_count) + " read (" +
+                     std::to_string(report.non_finite_faces) + " with coordinates that are not finite, " +
+                     std::to_string(report.degenerate_faces) +
+                     " without area); give a model with surfaces, and check that its export includes meshes.");
+  drop_duplicates(complex, report);
+  return complex;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,329 @@
+#include "meshing/imprint_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "meshing/box_tree.h"
+#include "meshing/point_index.h"
+#include "solver/model/parallel.h"
+
+namespace clerestory {
+namespace {
+
+using Ends = std::array<std::uint32_t, 2>;
+
+double longest_edge(const FaceComplex& complex, const Face& f) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest = std::max(longest, length(complex.vertices[f.corner[(k + 1) % 3]] - complex.vertices[f.corner[k]]));
+  return longest;
+}
+
+/// The part of a face that lies in a plane it is not parallel to.
+struct Trace {
+  std::array<Vec3, 2> end;
+};
+
+std::optional<Trace> trace(const FaceComplex& complex, const Face& face, const Plane& plane, double tolerance) {
+  std::array<Vec3, 3> p;
+  std::array<double, 3> d;
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = complex.vertices[face.corner[k]];
+    d[k] = plane.distance(p[k]);
+    if (std::abs(d[k]) <= tolerance) d[k] = 0;
+  }
+  std::array<Vec3, 3> found;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (d[k] == 0) found[count++] = p[k];
+  if (count == 3) return std::nullopt;  // parallel within tolerance: its edges and vertices speak for it
+  for (std::size_t k = 0; k < 3 && count < 2; ++k) {
+    const std::size_t j = (k + 1) % 3;
+    if (d[k] * d[j] < 0) found[count++] = p[k] + (p[j] - p[k]) * (d[k] / (d[k] - d[j]));
+  }
+  if (count == 0) return std::nullopt;
+  return Trace{{found[0], found[count == 2 ? 1 : 0]}};
+}
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a;
+  const double dd = dot(d, d);
+  const double t = dd > 0 ? std::clamp(dot(p - a, d) / dd, 0.0, 1.0) : 0;
+  return length(p - a - d * t);
+}
+
+struct Contact {
+  std::uint32_t face_a, face_b;
+  std::array<Vec3, 2> end;
+  double tolerance;
+};
+
+std::optional<Contact> contact(const FaceComplex& complex, std::uint32_t face_a, std::uint32_t face_b,
+                               const Plane& plane_a, const Plane& plane_b) {
+  const Face &a = complex.faces[face_a], &b = complex.faces[face_b];
+  const double tolerance =
+      std::min(kContact, kLocalShare * std::min(longest_edge(complex, a), longest_edge(complex, b)));
+  const auto ta = trace(complex, a, plane_b, tolerance);
+  if (!ta) return std::nullopt;
+  const auto tb = trace(complex, b, plane_a, tolerance);
+  if (!tb) return std::nullopt;
+  // Along the common line: the later of the starts to the earlier of the ends.
+  const Vec3 along = normalized(cross(plane_a.n, plane_b.n));
+  auto [a0, a1] = ta->end;
+  auto [b0, b1] = tb->end;
+  if (dot(a1 - a0, along) < 0) std::swap(a0, a1);
+  if (dot(b1 - b0, along) < 0) std::swap(b0, b1);
+  const Vec3 start = dot(b0 - a0, along) > 0 ? b0 : a0;
+  const Vec3 end = dot(b1 - a1, along) < 0 ? b1 : a1;
+  if (dot(end - start, along) < -tolerance) return std::nullopt;
+  // Between nearly parallel faces the line is ill defined; trust only what lies on both.
+  for (const Vec3& p : {start, end})
+    if (distance_to_segment(p, a0, a1) > 3 * tolerance || distance_to_segment(p, b0, b1) > 3 * tolerance)
+      return std::nullopt;
+  return Contact{face_a, face_b, {start, end}, tolerance};
+}
+
+std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector<PlaneGroup>& groups,
+                                   const std::vector<std::uint32_t>& group_of) {
+  const std::size_t count = complex.faces.size();
+  std::vector<Box> boxes(count);
+  for (std::size_t f = 0; f < count; ++f) {
+    for (const std::uint32_t v : complex.faces[f].corner) boxes[f].add(complex.vertices[v]);
+    boxes[f] = boxes[f].grown(kContact / 2);
+  }
+  const BoxTree tree(boxes);
+  constexpr std::size_t kGrain = 256;
+  std::vector<std::vector<Contact>> found((count + kGrain - 1) / kGrain);
+  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk)
+      for (std::size_t f = chunk * kGrain; f < std::min(count, (chunk + 1) * kGrain); ++f) {
+        const auto& cf = complex.faces[f].corner;
+        tree.visit(boxes[f], [&](std::uint32_t g) {
+          if (g <= f || group_of[g] == group_of[f]) return;
+          const auto& cg = complex.faces[g].corner;
+          int shared = 0;
+          for (const std::uint32_t v : cf) shared += v == cg[0] || v == cg[1] || v == cg[2];
+          if (shared >= 2) return;  // a common edge, drawn already
+          const auto c =
+              contact(complex, static_cast<std::uint32_t>(f), g, groups[group_of[f]].plane, groups[group_of[g]].plane);
+          if (c) found[chunk].push_back(*c);
+        });
+      }
+  });
+  std::vector<Contact> all;
+  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
+/// Vertices on a line beside its ends, from its start to its end.
+using Stops = std::vector<std::uint32_t>;
+
+void keep_unique(std::vector<Line>& lines) {
+  std::sort(lines.begin(), lines.end());
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+}
+
+std::vector<Ends> distinct_ends(const std::vector<Line>& lines) {
+  std::vector<Ends> ends;
+  for (const Line& l : lines) ends.push_back({l.a, l.b});
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  return ends;
+}
+
+/// Splits lines at vertices that lie on them and at the `forced` ones. Returns how many distinct lines were split at a
+/// vertex below `first_new`.
+std::size_t split(const FaceComplex& complex, std::vector<Line>& lines, const std::map<Ends, Stops>& forced,
+                  std::uint32_t first_new) {
+  const std::vector<Ends> ends = distinct_ends(lines);
+  std::vector<std::uint32_t> used;
+  for (const Ends& e : ends) used.insert(used.end(), e.begin(), e.end());
+  for (const auto& [e, stops] : forced) used.insert(used.end(), stops.begin(), stops.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Box> boxes(used.size());
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    boxes[k].add(complex.vertices[used[k]]);
+    boxes[k] = boxes[k].grown(kContact);
+  }
+  const BoxTree tree(std::move(boxes));
+
+  std::vector<Stops> stops(ends.size());
+  parallel_for(ends.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vec3 a = complex.vertices[ends[k][0]], b = complex.vertices[ends[k][1]];
+      const Vec3 d = b - a;
+      const double dd = dot(d, d), tolerance = std::min(kContact, kLocalShare * std::sqrt(dd));
+      std::vector<std::pair<double, std::uint32_t>> on;
+      const auto place = [&](std::uint32_t v) { return dot(complex.vertices[v] - a, d) / dd; };
+      tree.visit_if([&](const Box& box) { return box.touches_segment(a, b); },
+                    [&](std::uint32_t i) {
+                      const std::uint32_t v = used[i];
+                      if (v == ends[k][0] || v == ends[k][1]) return;
+                      const double t = place(v);
+                      if (t <= 0 || t >= 1 || length(complex.vertices[v] - a - d * t) > tolerance) return;
+                      on.push_back({t, v});
+                    });
+      if (const auto it = forced.find(ends[k]); it != forced.end())
+        for (const std::uint32_t v : it->second)
+          if (const double t = place(v); t > 0 && t < 1) on.push_back({t, v});
+      std::sort(on.begin(), on.end());
+      on.erase(std::unique(on.begin(), on.end()), on.end());
+      for (const auto& [t, v] : on) stops[k].push_back(v);
+    }
+  });
+
+  std::size_t at_old = 0;
+  for (const Stops& s : stops)
+    at_old += static_cast<std::size_t>(std::count_if(s.begin(), s.end(), [&](auto v) { return v < first_new; }));
+  std::vector<Line> pieces;
+  for (const Line& l : lines) {
+    const auto k = std::lower_bound(ends.begin(), ends.end(), Ends{l.a, l.b}) - ends.begin();
+    std::uint32_t from = l.a;
+    for (const std::uint32_t v : stops[static_cast<std::size_t>(k)]) {
+      pieces.push_back(line(l.group, from, v));
+      from = v;
+    }
+    pieces.push_back(line(l.group, from, l.b));
+  }
+  lines = std::move(pieces);
+  keep_unique(lines);
+  return at_old;
+}
+
+struct Crossing {
+  Ends first, second;
+  Vec3 place;
+  double tolerance;
+};
+
+/// Where lines of one group cross away from their ends.
+std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, std::span<const Line> lines) {
+  std::vector<Crossing> found;
+  std::vector<std::array<Point2, 2>> flat;
+  std::vector<Box> boxes;
+  for (const Line& l : lines) {
+    flat.push_back({plane.flatten(complex.vertices[l.a]), plane.flatten(complex.vertices[l.b])});
+    Box box;
+    for (const Point2& p : flat.back()) box.add(Vec3{p.x, p.y, 0});
+    boxes.push_back(box);
+  }
+  const auto test = [&](std::size_t i, std::size_t j) {
+    const Line &li = lines[i], &lj = lines[j];
+    if (li.a == lj.a || li.a == lj.b || li.b == lj.a || li.b == lj.b) return;
+    const auto& [p, q] = flat[i];
+    const auto& [r, s] = flat[j];
+    const double dx = q.x - p.x, dy = q.y - p.y, ex = s.x - r.x, ey = s.y - r.y;
+    const double det = dx * ey - dy * ex;
+    const double li2 = std::hypot(dx, dy), lj2 = std::hypot(ex, ey);
+    if (std::abs(det) <= 1e-12 * li2 * lj2) return;
+    const double u = ((r.x - p.x) * ey - (r.y - p.y) * ex) / det, v = ((r.x - p.x) * dy - (r.y - p.y) * dx) / det;
+    if (!(u > 0 && u < 1 && v > 0 && v < 1)) return;
+    const Vec3 a = complex.vertices[li.a], b = complex.vertices[li.b], c = complex.vertices[lj.a],
+               d = complex.vertices[lj.b];
+    found.push_back({{li.a, li.b},
+                     {lj.a, lj.b},
+                     ((a + (b - a) * u) + (c + (d - c) * v)) / 2,
+                     std::min(kWeld, kLocalShare * std::min(li2, lj2))});
+  };
+  if (lines.size() < 24) {
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      for (std::size_t j = i + 1; j < lines.size(); ++j)
+        if (boxes[i].touches(boxes[j])) test(i, j);
+    return found;
+  }
+  const BoxTree tree(boxes);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    tree.visit_if(
+        [&](const Box& b) {
+          return b.touches(boxes[i]) &&
+                 b.touches_segment({flat[i][0].x, flat[i][0].y, 0}, {flat[i][1].x, flat[i][1].y, 0});
+        },
+        [&](std::uint32_t j) {
+          if (j > i) test(i, j);
+        });
+  return found;
+}
+
+std::vector<std::vector<Crossing>> crossings_by_group(const FaceComplex& complex, const std::vector<PlaneGroup>& groups,
+                                                      const std::vector<Line>& lines) {
+  std::vector<std::size_t> begin_of(groups.size() + 1, lines.size());
+  for (std::size_t k = lines.size(); k-- > 0;) begin_of[lines[k].group] = k;
+  for (std::size_t g = groups.size(); g-- > 0;) begin_of[g] = std::min(begin_of[g], begin_of[g + 1]);
+  std::vector<std::vector<Crossing>> found(groups.size());
+  parallel_for(groups.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g)
+      if (begin_of[g + 1] - begin_of[g] > 3)
+        found[g] =
+            crossings(complex, groups[g].plane, std::span(lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]));
+  });
+  return found;
+}
+
+}  // namespace
+
+void split_at_vertices(const FaceComplex& complex, std::vector<Line>& lines) { split(complex, lines, {}, 0); }
+
+Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& groups, MeshReport& report) {
+  Drawing drawing;
+  std::vector<std::uint32_t> group_of(complex.faces.size());
+  for (std::uint32_t g = 0; g < groups.size(); ++g)
+    for (const std::uint32_t f : groups[g].faces) {
+      group_of[f] = g;
+      const auto& c = complex.faces[f].corner;
+      for (std::size_t k = 0; k < 3; ++k) drawing.lines.push_back(line(g, c[k], c[(k + 1) % 3]));
+    }
+  keep_unique(drawing.lines);
+  const auto first_new = static_cast<std::uint32_t>(complex.vertices.size());
+  // T-junctions: vertices of the model inside edges of the model.
+  report.t_junctions = split(complex, drawing.lines, {}, first_new);
+
+  PointIndex index(complex.vertices, kContact);
+  for (std::uint32_t v = 0; v < first_new; ++v) index.add(v);
+  const auto vertex_at = [&](const Vec3& p, double tolerance) {
+    const std::uint32_t known = index.find(p, tolerance);
+    if (known != PointIndex::kNone) return known;
+    const auto id = static_cast<std::uint32_t>(complex.vertices.size());
+    complex.vertices.push_back(p);
+    index.add(id);
+    return id;
+  };
+
+  for (const Contact& c : find_contacts(complex, groups, group_of)) {
+    const std::uint32_t a = vertex_at(c.end[0], c.tolerance), b = vertex_at(c.end[1], c.tolerance);
+    for (const std::uint32_t face : {c.face_a, c.face_b}) {
+      if (a != b) drawing.lines.push_back(line(group_of[face], a, b));
+      const auto& corner = complex.faces[face].corner;
+      if (a == b && std::find(corner.begin(), corner.end(), a) == corner.end())
+        drawing.points.push_back({group_of[face], a});
+    }
+  }
+  keep_unique(drawing.lines);
+  std::sort(drawing.points.begin(), drawing.points.end());
+  drawing.points.erase(std::unique(drawing.points.begin(), drawing.points.end()), drawing.points.end());
+
+  // New vertices may lie on other lines, and a line bent to a vertex may cross another: until nothing changes.
+  for (int round = 0; round < 8; ++round) {
+    std::map<Ends, Stops> forced;
+    if (round > 0) {
+      bool any = false;
+      for (const auto& found : crossings_by_group(complex, groups, drawing.lines))
+        for (const Crossing& c : found) {
+          const std::uint32_t v = vertex_at(c.place, c.tolerance);
+          for (const Ends& e : {c.first, c.second})
+            if (v != e[0] && v != e[1]) {
+              forced[e].push_back(v);
+              any = true;
+            }
+        }
+      if (!any) break;
+    }
+    split(complex, drawing.lines, forced, 0);
+  }
+  return drawing;
+}
+
+}  // namespace clerestory

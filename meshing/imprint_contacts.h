@@ -1,0 +1,28 @@
+#pragma once
+// Where surfaces touch or cross, both get the line.
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "meshing/surface_complex.h"
+#include "solver/model/mesh_report.h"
+
+namespace clerestory {
+
+/// What must be drawn into each plane: sorted, unique, and lines meet only at their ends.
+struct Drawing {
+  std::vector<Line> lines;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> points;  ///< group, vertex
+};
+
+/// Draws the edges of all faces and the lines along which faces of different planes touch or cross, then splits every
+/// line at each vertex that lies on it and where lines of one plane cross. New vertices are added to `complex`; points
+/// closer than the tolerance become one.
+/// Cost: O(F log F) plus the number of pairs of faces whose boxes touch.
+Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& groups, MeshReport& report);
+
+/// The last step of it, for lines that changed: splits lines at the vertices used by any of them that lie on them.
+void split_at_vertices(const FaceComplex& complex, std::vector<Line>& lines);
+
+}  // namespace clerestory

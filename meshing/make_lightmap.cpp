@@ -1,0 +1,152 @@
+#include "meshing/make_lightmap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "solver/model/parallel.h"
+
+namespace clerestory {
+namespace {
+
+/// Corner k of patch p is 3 p + k, counted as the triangle's corners are, whichever side p is.
+using Corner = std::uint32_t;
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// The lower index becomes the root, so that numbers follow the order of patches.
+  void join(std::uint32_t i, std::uint32_t j) {
+    i = root(i);
+    j = root(j);
+    if (i != j) parent_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+struct HalfEdge {
+  std::uint32_t low, high;  ///< vertices
+  std::uint32_t triangle;
+  std::uint8_t from;  ///< corner where the edge starts, in the triangle's order
+  bool ascending;     ///< runs from low to high in the triangle's order
+};
+
+/// A triangle as seen along an edge.
+struct Blade {
+  double angle;  ///< around the edge, counter-clockwise seen against its direction from low to high
+  const HalfEdge* edge;
+};
+
+/// Front sides look counter-clockwise around an edge that runs up, else clockwise.
+Side side_towards(const HalfEdge& e, bool counter_clockwise) {
+  return e.ascending == counter_clockwise ? kFront : kBack;
+}
+
+}  // namespace
+
+VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
+  const std::size_t triangles = patches.triangle_count(), count = patches.patch_count();
+  std::vector<HalfEdge> edges;
+  edges.reserve(3 * triangles);
+  for (std::uint32_t t = 0; t < triangles; ++t)
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = patches.corners[t][k].value, b = patches.corners[t][(k + 1u) % 3u].value;
+      edges.push_back({std::min(a, b), std::max(a, b), t, k, a < b});
+    }
+  std::sort(edges.begin(), edges.end(), [](const HalfEdge& x, const HalfEdge& y) {
+    return x.low != y.low ? x.low < y.low : x.high != y.high ? x.high < y.high : x.triangle < y.triangle;
+  });
+
+  const double least_cosine = std::cos(crease_deg * std::numbers::pi / 180);
+  UnionFind shared(3 * count);
+  std::vector<Blade> blades;
+  for (std::size_t begin = 0; begin < edges.size();) {
+    std::size_t end = begin + 1;
+    while (end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high) ++end;
+    const Vec3 low = patches.vertices[edges[begin].low];
+    const Frame around(normalized(patches.vertices[edges[begin].high] - low));
+    blades.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vec3 apex = patches.vertices[patches.corners[edges[k].triangle][(edges[k].from + 2u) % 3u]] - low;
+      blades.push_back({std::atan2(dot(apex, around.b), dot(apex, around.t)), &edges[k]});
+    }
+    std::stable_sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) { return a.angle < b.angle; });
+    // One blade alone has a rim: its front and its back meet there and do not go on smoothly.
+    for (std::size_t k = 0; blades.size() > 1 && k < blades.size(); ++k) {
+      const HalfEdge &here = *blades[k].edge, &next = *blades[(k + 1) % blades.size()].edge;
+      const PatchId p = patches.side_patch[here.triangle][side_towards(here, true)];
+      const PatchId q = patches.side_patch[next.triangle][side_towards(next, false)];
+      if (!p.valid() || !q.valid() || patches.material(p) != patches.material(q) ||
+          dot(patches.normal[p], patches.normal[q]) < least_cosine)
+        continue;
+      const auto corner = [&](PatchId patch, const HalfEdge& e, bool at_low) -> Corner {
+        const bool at_start = at_low == e.ascending;
+        return 3 * patch.value + (at_start ? e.from : (e.from + 1u) % 3u);
+      };
+      shared.join(corner(p, here, true), corner(q, next, true));
+      shared.join(corner(p, here, false), corner(q, next, false));
+    }
+    begin = end;
+  }
+
+  VertexLightmap map;
+  map.corners.resize(count);
+  constexpr std::uint32_t kNone = 0xffffffff;
+  std::vector<std::uint32_t> point_of(3 * count, kNone);
+  std::vector<Vec3> inward;        // sum of ways to the centroids
+  std::vector<std::uint32_t> fan;  // patches that share the point
+  for (std::uint32_t p = 0; p < count; ++p) {
+    const TriangleId t = patches.triangle[p];
+    std::array<Vec3, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) x[k] = patches.vertices[patches.corners[t][k]];
+    const Vec3 centroid = (x[0] + x[1] + x[2]) / 3;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      std::uint32_t& point = point_of[shared.root(3 * p + k)];
+      if (point == kNone) {
+        point = static_cast<std::uint32_t>(map.position.size());
+        map.position.push_back(x[k]);
+        map.normal.emplace_back();
+        map.patch_of_point.push_back(p);
+        inward.emplace_back();
+        fan.push_back(0);
+      }
+      const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
+      map.normal[point] += patches.normal[p] * std::atan2(length(cross(e, f)), dot(e, f));
+      inward[point] += centroid - x[k];
+      ++fan[point];
+      // Seen from the back the corners run the other way.
+      const std::uint32_t place = patches.side[p] == kFront ? k : (3 - k) % 3;
+      map.corners[p][place] = point;
+    }
+  }
+  map.sample_position.resize(map.position.size());
+  for (std::size_t i = 0; i < map.position.size(); ++i) {
+    const Vec3 n = normalized(map.normal[i]);
+    map.normal[i] = n == Vec3{} ? patches.normal[map.patch_of_point[i]] : n;
+    // Far enough from edges and contacts for single precision rays, and near enough not to be seen.
+    map.sample_position[i] = map.position[i] + inward[i] * (2e-3 / fan[i]);
+  }
+  map.E = Field(map.position.size(), patches.channels);
+  return map;
+}
+
+void average_to_points(const PatchSet& patches, const Field& patch_E, VertexLightmap& lightmap) {
+  lightmap.E = Field(lightmap.position.size(), patch_E.channels);
+  std::vector<double> area(lightmap.position.size());
+  for (std::size_t p = 0; p < patches.patch_count(); ++p)
+    for (const std::uint32_t point : lightmap.corners[p]) {
+      lightmap.E.add(point, patch_E[p] * patches.area[p]);
+      area[point] += patches.area[p];
+    }
+  for (std::size_t i = 0; i < area.size(); ++i)
+    for (int k = 0; k < patch_E.channels; ++k) lightmap.E.at(i, k) /= area[i];
+}
+
+}  // namespace clerestory

@@ -1,0 +1,101 @@
+#include "meshing/overlaps.h"
+
+#include <map>
+#include <tuple>
+
+namespace clerestory {
+namespace {
+
+double twice_area(const Point2& a, const Point2& b, const Point2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Distance from p to the nearest edge's line, positive inside of a counter-clockwise triangle.
+double depth(const std::array<Point2, 3>& t, const Point2& p) {
+  double least = Box::kHuge;
+  for (int k = 0; k < 3; ++k) {
+    const Point2 a = t[static_cast<std::size_t>(k)], b = t[static_cast<std::size_t>((k + 1) % 3)];
+    least = std::min(least, twice_area(a, b, p) / std::hypot(b.x - a.x, b.y - a.y));
+  }
+  return least;
+}
+
+}  // namespace
+
+Covering::Covering(const FaceComplex& complex, const PlaneGroup& group, std::span<const Material> materials)
+    : materials_(materials) {
+  std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, double> area;
+  std::vector<Box> boxes;
+  for (const std::uint32_t f : group.faces) {
+    const Face& face = complex.faces[f];
+    Piece piece{{}, true, face.material, face.surface, 0};
+    for (std::size_t k = 0; k < 3; ++k) piece.corner[k] = group.plane.flatten(complex.vertices[face.corner[k]]);
+    double a = twice_area(piece.corner[0], piece.corner[1], piece.corner[2]) / 2;
+    if (a < 0) {
+      std::swap(piece.corner[1], piece.corner[2]);
+      piece.faces_up = false;
+      a = -a;
+    }
+    area[{face.material.value, face.surface.value, piece.faces_up}] += a;
+    Box box;
+    for (const Point2& p : piece.corner) box.add(Vec3{p.x, p.y, 0});
+    boxes.push_back(box);
+    pieces_.push_back(piece);
+  }
+  for (Piece& p : pieces_) {
+    const Material& m = materials_[p.material];
+    const bool preferred = m.emits() || m.kind == MaterialKind::glass;
+    p.rank = area[{p.material.value, p.surface.value, p.faces_up}] * (preferred ? 0.5 : 1);
+  }
+  if (pieces_.size() > 1) tree_.emplace(std::move(boxes));
+}
+
+const Covering::Piece* Covering::winner(const std::vector<const Piece*>& covering, bool above,
+                                        bool by_size_only) const {
+  const Piece* best = nullptr;
+  const auto key = [&](const Piece& p) {
+    const Material& m = materials_[p.material];
+    const bool front = p.faces_up == above;
+    const bool acts = front || m.sides == 2;
+    return by_size_only ? std::tuple(0, 0, p.rank) : std::tuple(acts ? 0 : 1, front ? 0 : 1, p.rank);
+  };
+  for (const Piece* p : covering)
+    if (!best || key(*p) < key(*best)) best = p;
+  return best;
+}
+
+std::optional<Covering::Found> Covering::at(const Point2& p, double reach) const {
+  std::vector<const Piece*> covering;
+  if (!tree_) {
+    covering.push_back(&pieces_.front());
+    if (depth(covering.front()->corner, p) < -kContact) covering.clear();
+  } else {
+    // In a cell narrower than the tolerance a point may fall beside the faces that meant to cover it.
+    for (const double slack : {0.0, reach < kContact ? kContact : 0.0}) {
+      if (!covering.empty()) break;
+      Box box;
+      box.add(Vec3{p.x, p.y, 0});
+      tree_->visit(box.grown(slack), [&](std::uint32_t k) {
+        if (depth(pieces_[k].corner, p) >= -slack) covering.push_back(&pieces_[k]);
+      });
+    }
+    // The tree's order is not the file's.
+    std::sort(covering.begin(), covering.end());
+  }
+  if (covering.empty()) return std::nullopt;
+
+  const Piece* best = winner(covering, true, true);
+  Found found;
+  found.faces = static_cast<int>(covering.size());
+  if (materials_[best->material].kind != MaterialKind::glass)
+    std::erase_if(covering, [&](const Piece* q) { return materials_[q->material].kind == MaterialKind::glass; });
+  else
+    covering.assign(1, best);
+  const Piece *above = winner(covering, true, false), *below = winner(covering, false, false);
+  found.sheet = {above->material, below->material, above->surface, below->surface, false, false};
+  found.sheet.flipped = !above->faces_up && !below->faces_up;
+  found.sheet.joined = above->faces_up && !below->faces_up;
+  return found;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,353 @@
+#include "meshing/subdivide.h"
+
+#include <algorithm>
+#include <memory>
+#include <queue>
+
+#include "meshing/cells.h"
+#include "solver/model/parallel.h"
+
+namespace clerestory {
+namespace {
+
+using Ends = std::array<std::uint32_t, 2>;
+Ends ends_of(std::uint32_t a, std::uint32_t b) { return a < b ? Ends{a, b} : Ends{b, a}; }
+
+constexpr double kLineShare = 0.8;            ///< even division of lines, as share of `longest`
+constexpr double kFinest = 0.2;               ///< angles are bettered down to this share of `longest`
+constexpr double kRadiusToEdge = 1.18;        ///< circumradius / shortest edge = 1 / (2 sin 25 degrees)
+constexpr std::uint32_t kInner = 0x80000000;  ///< ids from here on are a region's own, until the end
+constexpr int kRounds = 24;
+
+struct Halving {
+  Ends line;
+  std::uint32_t middle;
+};
+
+/// One plane under refinement.
+class RegionMesh {
+ public:
+  RegionMesh(const FaceComplex& complex, const PlaneGroup& group, std::span<const Material> materials,
+             const std::vector<Ends>& lines, const std::vector<std::uint32_t>& points, double longest)
+      : plane_(group.plane), longest_(longest), finest_(kFinest * longest) {
+    handle_ = draw(cdt_, plane_, complex.vertices, lines, points);
+    Cells cells = mark_sheets(cdt_, Covering(complex, group, materials));
+    sheets_ = std::move(cells.sheets);
+    cells_ = cells.count;
+  }
+
+  /// Inserts vertices until no triangle is bad but those that wait for the lines it returns, sorted, to be halved.
+  std::vector<Ends> refine(bool may_ask) {
+    asked_.clear();
+    may_ask_ = may_ask;
+    for (const auto f : cdt_.finite_face_handles()) consider(f);
+    while (!bad_.empty()) {
+      const Bad bad = bad_.top();
+      bad_.pop();
+      Cdt::Face_handle f;
+      if (cdt_.is_face(bad.corner[0], bad.corner[1], bad.corner[2], f)) better(f);
+    }
+    std::sort(asked_.begin(), asked_.end());
+    asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+    return asked_;
+  }
+
+  void halve(const Halving& h, const Vec3& middle) {
+    const auto a = handle_.find(h.line[0]), b = handle_.find(h.line[1]);
+    Cdt::Face_handle f;
+    int i = 0;
+    if (a == handle_.end() || b == handle_.end() || !cdt_.is_edge(a->second, b->second, f, i)) return;
+    // Going counter-clockwise around the new vertex, what lay left of from -> to follows the half towards `to`.
+    const Vertex from = f->vertex(cdt_.ccw(i)), to = f->vertex(cdt_.cw(i));
+    const int left = f->info().mark, right = f->neighbor(i)->info().mark;
+    const Point2 p = plane_.flatten(middle);
+    const Vertex v = cdt_.insert({p.x, p.y}, Cdt::EDGE, f, i);
+    v->info().id = h.middle;
+    handle_[h.middle] = v;
+    // All faces that changed are around v.
+    auto face = cdt_.incident_faces(v);
+    while (face->vertex(cdt_.ccw(face->index(v))) != to) ++face;
+    const auto first = face;
+    int mark = left;
+    do {
+      if (face->vertex(cdt_.ccw(face->index(v))) == from) mark = right;
+      face->info().mark = mark;
+    } while (++face != first);
+  }
+
+  std::size_t cell_count() const { return cells_; }
+  void collect(std::uint32_t first_inner, std::vector<Vec3>& vertices, std::vector<MeshTriangle>& triangles) const {
+    for (const Point2& p : inner_) vertices.push_back(plane_.lift(p));
+    for (const auto f : cdt_.finite_face_handles()) {
+      if (f->info().mark < 0) continue;
+      MeshTriangle t{{}, sheets_[static_cast<std::size_t>(f->info().mark)]};
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t id = f->vertex(k)->info().id;
+        t.corner[static_cast<std::size_t>(k)] = id >= kInner ? first_inner + (id - kInner) : id;
+      }
+      if (t.sheet.flipped) {
+        std::swap(t.corner[1], t.corner[2]);
+        std::swap(t.sheet.material_above, t.sheet.material_below);
+        std::swap(t.sheet.surface_above, t.sheet.surface_below);
+      }
+      triangles.push_back(t);
+    }
+  }
+
+ private:
+  using Vertex = Cdt::Vertex_handle;
+  struct Bad {
+    double radius;
+    std::array<std::uint32_t, 3> ids;
+    std::array<Vertex, 3> corner;
+    bool operator<(const Bad& b) const { return radius != b.radius ? radius < b.radius : ids > b.ids; }
+  };
+  struct Shape {
+    double longest, shortest, radius;
+    int longest_edge;
+  };
+
+  static double distance(const CdtKernel::Point_2& a, const CdtKernel::Point_2& b) {
+    return std::hypot(b.x() - a.x(), b.y() - a.y());
+  }
+  static Shape shape_of(Cdt::Face_handle f) {
+    Shape s{0, Box::kHuge, 0, 0};
+    double product = 1;
+    for (int i = 0; i < 3; ++i) {
+      const double l = distance(f->vertex((i + 1) % 3)->point(), f->vertex((i + 2) % 3)->point());
+      if (l > s.longest) {
+        s.longest = l;
+        s.longest_edge = i;
+      }
+      s.shortest = std::min(s.shortest, l);
+      product *= l;
+    }
+    const auto &p = f->vertex(0)->point(), &q = f->vertex(1)->point(), &r = f->vertex(2)->point();
+    const double twice_area = (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
+    s.radius = twice_area > 0 ? product / (2 * twice_area) : Box::kHuge;
+    return s;
+  }
+  bool is_too_long(const Shape& s) const { return s.longest > longest_ * (1 + 1e-9); }
+  bool is_bad(const Shape& s) const {
+    return is_too_long(s) || (s.radius > kRadiusToEdge * s.shortest && s.radius > finest_);
+  }
+
+  void consider(Cdt::Face_handle f) {
+    if (f->info().mark < 0) return;
+    const Shape s = shape_of(f);
+    if (!is_bad(s)) return;
+    Bad bad{s.radius, {}, {}};
+    for (int k = 0; k < 3; ++k) {
+      bad.corner[static_cast<std::size_t>(k)] = f->vertex(k);
+      bad.ids[static_cast<std::size_t>(k)] = f->vertex(k)->info().id;
+    }
+    std::sort(bad.ids.begin(), bad.ids.end());
+    bad_.push(bad);
+  }
+
+  /// Asks for the line opposite to corner i of f to be halved; false when it is too short for that.
+  bool ask(Cdt::Face_handle f, int i, double shortest_half) {
+    if (!may_ask_) return false;
+    const auto a = f->vertex(cdt_.cw(i)), b = f->vertex(cdt_.ccw(i));
+    if (distance(a->point(), b->point()) < 2 * shortest_half) return false;
+    asked_.push_back(ends_of(a->info().id, b->info().id));
+    return true;
+  }
+
+  void better(Cdt::Face_handle f) {
+    const Shape s = shape_of(f);
+    const bool too_long = is_too_long(s);
+    if (insert_circumcentre(f, s, too_long)) return;
+    if (!too_long) return;
+    // Nothing else is left: halve the longest edge.
+    if (cdt_.is_constrained({f, s.longest_edge})) {
+      ask(f, s.longest_edge, 0);
+      return;
+    }
+    const auto &a = f->vertex(cdt_.cw(s.longest_edge))->point(), &b = f->vertex(cdt_.ccw(s.longest_edge))->point();
+    insert({(a.x() + b.x()) / 2, (a.y() + b.y()) / 2}, f);
+  }
+
+  /// True when done with f for now: a vertex was inserted, or a line that is in the way was asked to be halved.
+  bool insert_circumcentre(Cdt::Face_handle f, const Shape& s, bool too_long) {
+    if (!(s.radius < 1e3 * s.longest)) return blocked_beyond_reason(f, s);
+    const CdtKernel::Point_2 c =
+        CGAL::circumcenter(f->vertex(0)->point(), f->vertex(1)->point(), f->vertex(2)->point());
+    // Walk from inside of f to c; a line on the way is encroached by c.
+    const auto &p = f->vertex(0)->point(), &q = f->vertex(1)->point(), &r = f->vertex(2)->point();
+    const CdtKernel::Point_2 from((p.x() + q.x() + r.x()) / 3, (p.y() + q.y() + r.y()) / 3);
+    Cdt::Face_handle at = f;
+    for (int entered = -1, steps = 0;; ++steps) {
+      if (steps > 10'000) return false;
+      int leave = -1;
+      for (int i = 0; i < 3 && leave < 0; ++i) {
+        if (i == entered) continue;
+        const auto &a = at->vertex(cdt_.ccw(i))->point(), &b = at->vertex(cdt_.cw(i))->point();
+        if (CGAL::orientation(a, b, c) != CGAL::RIGHT_TURN) continue;
+        if (CGAL::orientation(from, c, a) != CGAL::LEFT_TURN && CGAL::orientation(from, c, b) != CGAL::RIGHT_TURN)
+          leave = i;
+      }
+      if (leave < 0) break;
+      if (cdt_.is_constrained({at, leave})) return ask(at, leave, finest_ / 2);
+      const auto next = at->neighbor(leave);
+      if (cdt_.is_infinite(next)) return false;
+      entered = next->index(at);
+      at = next;
+    }
+    if (at->info().mark != f->info().mark) return false;  // rounding led past a line's end
+    std::vector<Cdt::Edge> rim;
+    cdt_.get_boundary_of_conflicts(c, std::back_inserter(rim), at);
+    bool asked = false, crowded = false;
+    for (const auto& [g, i] : rim) {
+      if (!cdt_.is_constrained({g, i})) continue;
+      const auto &a = g->vertex(cdt_.ccw(i))->point(), &b = g->vertex(cdt_.cw(i))->point();
+      if ((a.x() - c.x()) * (b.x() - c.x()) + (a.y() - c.y()) * (b.y() - c.y()) >= 0) continue;
+      crowded = true;
+      asked |= ask(g, i, finest_ / 2);
+    }
+    if (asked) return true;
+    if (crowded && !too_long) return false;
+    return insert(c, at);
+  }
+  /// f is next to flat: only halving a line of its can help.
+  bool blocked_beyond_reason(Cdt::Face_handle f, const Shape& s) {
+    return cdt_.is_constrained({f, s.longest_edge}) && ask(f, s.longest_edge, finest_ / 2);
+  }
+
+  bool insert(const CdtKernel::Point_2& p, Cdt::Face_handle near) {
+    const int mark = near->info().mark;
+    Cdt::Locate_type type;
+    int i = 0;
+    const auto f = cdt_.locate(p, type, i, near);
+    if (type == Cdt::VERTEX || type == Cdt::OUTSIDE_CONVEX_HULL || type == Cdt::OUTSIDE_AFFINE_HULL) return false;
+    if (type == Cdt::EDGE && cdt_.is_constrained({f, i})) return ask(f, i, finest_ / 2);
+    if (f->info().mark != mark) return false;
+    const auto v = cdt_.insert(p, type, f, i);
+    v->info().id = kInner + static_cast<std::uint32_t>(inner_.size());
+    inner_.push_back({p.x(), p.y()});
+    // All faces that changed are around v, and no line parts them.
+    auto face = cdt_.incident_faces(v);
+    const auto first = face;
+    do face->info().mark = mark;
+    while (++face != first);
+    do consider(face);
+    while (++face != first);
+    return true;
+  }
+
+  Plane plane_;
+  double longest_, finest_;
+  Cdt cdt_;
+  std::unordered_map<std::uint32_t, Vertex> handle_;
+  std::vector<Sheet> sheets_;
+  std::size_t cells_ = 0;
+  std::vector<Point2> inner_;
+  std::priority_queue<Bad> bad_;
+  std::vector<Ends> asked_;
+  bool may_ask_ = true;
+};
+
+}  // namespace
+
+double estimate_triangles(const FaceComplex& complex, const std::vector<PlanarDomain>& domains, double area,
+                          double longest) {
+  // A mesh of edges up to h has mean triangles of about 0.21 h2; lines that are shorter than h add their own.
+  double pieces = 0;
+  for (const PlanarDomain& d : domains)
+    for (const Ends& l : d.lines) {
+      const double len = length(complex.vertices[l[1]] - complex.vertices[l[0]]);
+      pieces += std::ceil(len / (kLineShare * longest));
+    }
+  return area / (0.21 * longest * longest) + pieces;
+}
+
+std::vector<MeshTriangle> subdivide(FaceComplex& complex, const std::vector<PlaneGroup>& groups,
+                                    std::span<const Material> materials, const std::vector<PlanarDomain>& domains,
+                                    double longest, MeshReport& report, const Monitor& monitor) {
+  // Even division of every line, once for all regions that use it.
+  std::vector<std::pair<Ends, std::uint32_t>> uses;
+  for (std::uint32_t d = 0; d < domains.size(); ++d)
+    for (const Ends& l : domains[d].lines) uses.push_back({ends_of(l[0], l[1]), d});
+  std::sort(uses.begin(), uses.end());
+  uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
+  std::vector<std::vector<Ends>> lines(domains.size());
+  std::vector<std::vector<std::uint32_t>> users;
+  std::unordered_map<std::uint64_t, std::uint32_t> users_of;
+  const auto key = [](const Ends& e) { return std::uint64_t{e[0]} << 32 | e[1]; };
+  for (std::size_t k = 0; k < uses.size();) {
+    const Ends whole = uses[k].first;
+    std::vector<std::uint32_t> regions;
+    for (; k < uses.size() && uses[k].first == whole; ++k) regions.push_back(uses[k].second);
+    const Vec3 a = complex.vertices[whole[0]], b = complex.vertices[whole[1]];
+    const int pieces = std::max(1, static_cast<int>(std::ceil(length(b - a) / (kLineShare * longest) - 1e-9)));
+    std::uint32_t from = whole[0];
+    for (int i = 1; i <= pieces; ++i) {
+      std::uint32_t to = whole[1];
+      if (i < pieces) {
+        to = static_cast<std::uint32_t>(complex.vertices.size());
+        complex.vertices.push_back(a + (b - a) * (static_cast<double>(i) / pieces));
+      }
+      const Ends piece = ends_of(from, to);
+      users_of.emplace(key(piece), static_cast<std::uint32_t>(users.size()));
+      for (const std::uint32_t d : regions) lines[d].push_back(piece);
+      from = to;
+    }
+    users.push_back(std::move(regions));
+  }
+
+  std::vector<std::unique_ptr<RegionMesh>> meshes(domains.size());
+  parallel_for(domains.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d)
+      meshes[d] = std::make_unique<RegionMesh>(complex, groups[domains[d].group], materials, lines[d],
+                                               domains[d].points, longest);
+  });
+
+  std::vector<std::uint32_t> active(domains.size());
+  for (std::uint32_t d = 0; d < domains.size(); ++d) active[d] = d;
+  for (int round = 0; round <= kRounds && !active.empty(); ++round) {
+    monitor.report("mesh", static_cast<double>(round) / (kRounds + 1));
+    std::vector<std::vector<Ends>> asked(active.size());
+    parallel_for(active.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) asked[k] = meshes[active[k]]->refine(round < kRounds);
+    });
+    std::vector<Ends> all;
+    for (const auto& some : asked) all.insert(all.end(), some.begin(), some.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+
+    std::vector<std::pair<std::uint32_t, Halving>> work;  // region, what to do there
+    for (const Ends& e : all) {
+      const auto known = users_of.find(key(e));
+      if (known == users_of.end()) continue;  // a crossing that tolerances hid from every other region
+      const std::uint32_t list = known->second;
+      const auto middle = static_cast<std::uint32_t>(complex.vertices.size());
+      complex.vertices.push_back((complex.vertices[e[0]] + complex.vertices[e[1]]) / 2);
+      users_of.emplace(key(ends_of(e[0], middle)), list);
+      users_of.emplace(key(ends_of(e[1], middle)), list);
+      for (const std::uint32_t d : users[list]) work.push_back({d, {e, middle}});
+    }
+    std::stable_sort(work.begin(), work.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    active.clear();
+    std::vector<std::size_t> begin_of;
+    for (std::size_t k = 0; k < work.size(); ++k)
+      if (k == 0 || work[k].first != work[k - 1].first) {
+        active.push_back(work[k].first);
+        begin_of.push_back(k);
+      }
+    begin_of.push_back(work.size());
+    parallel_for(active.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        for (std::size_t w = begin_of[k]; w < begin_of[k + 1]; ++w)
+          meshes[active[k]]->halve(work[w].second, complex.vertices[work[w].second.middle]);
+    });
+  }
+
+  std::vector<MeshTriangle> triangles;
+  for (const auto& mesh : meshes) {
+    mesh->collect(static_cast<std::uint32_t>(complex.vertices.size()), complex.vertices, triangles);
+    report.planar_regions += mesh->cell_count();
+  }
+  return triangles;
+}
+
+}  // namespace clerestory

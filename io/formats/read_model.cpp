@@ -1,3 +1,4 @@
+#include "io/formats/assimp_model.h"
 #include "io/formats/model.h"
 #include "io/input_file.h"
 #include "io/text.h"
@@ -5,10 +6,29 @@
 
 namespace clerestory {
 
+namespace {
+
+struct Format {
+  std::string_view extension;
+  Model (*read)(const std::filesystem::path&);
+};
+constexpr Format kFormats[] = {
+    {".obj", read_obj},         {".gltf", read_with_assimp}, {".glb", read_with_assimp},
+    {".ply", read_with_assimp}, {".stl", read_with_assimp},  {".off", read_with_assimp},
+    {".dae", read_with_assimp}, {".fbx", read_with_assimp},  {".ifc", read_with_assimp},
+};
+
+}  // namespace
+
 Model read_model(const std::filesystem::path& file) {
   const std::string extension = to_lower(file.extension().string());
-  if (extension == ".obj") return read_obj(file);
-  throw InputError(text(short_name(file), ": '", quotable(extension), "' is not a model format; known are .obj"));
+  std::string known;
+  for (const Format& format : kFormats) {
+    if (extension == format.extension) return format.read(file);
+    known += text(known.empty() ? "" : " ", format.extension);
+  }
+  throw InputError(text(short_name(file), ": '", quotable(extension),
+                        "' is not the extension of a scene or model that is ", "read; known are .json ", known));
 }
 
 }  // namespace clerestory

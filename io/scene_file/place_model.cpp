@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "io/affine.h"
 #include "io/input_file.h"
 #include "io/scene_file/own_materials.h"
 #include "io/text.h"
@@ -12,16 +13,6 @@
 namespace clerestory {
 namespace {
 
-/// p -> A p + b, with A by rows.
-struct Affine {
-  std::array<Vec3, 3> A{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-  Vec3 b;
-
-  Vec3 direction(const Vec3& d) const { return {dot(A[0], d), dot(A[1], d), dot(A[2], d)}; }
-  Vec3 point(const Vec3& p) const { return direction(p) + b; }
-  double determinant() const { return dot(A[0], cross(A[1], A[2])); }
-};
-
 /// First the unit, then the turn of (x, y, z) into (x, -z, y), then the transform.
 Affine to_scene(double metres, Up up, const std::optional<std::array<double, 16>>& transform) {
   Affine file;
@@ -29,12 +20,8 @@ Affine to_scene(double metres, Up up, const std::optional<std::array<double, 16>
   for (Vec3& row : file.A) row *= metres;
   if (!transform) return file;
   const auto& t = *transform;
-  Affine placed;
-  for (std::size_t r = 0; r < 3; ++r) {
-    placed.A[r] = t[4 * r] * file.A[0] + t[4 * r + 1] * file.A[1] + t[4 * r + 2] * file.A[2];
-  }
-  placed.b = {t[3], t[7], t[11]};
-  return placed;
+  const Affine placed{{Vec3{t[0], t[1], t[2]}, Vec3{t[4], t[5], t[6]}, Vec3{t[8], t[9], t[10]}}, {t[3], t[7], t[11]}};
+  return placed * file;
 }
 
 /// `name`, or where that is taken "name (stem)", "name (stem 2)" ...
@@ -143,7 +130,7 @@ void place_model(Scene& scene, const Model& model, const std::filesystem::path& 
   }
   const double metres = model.metres_per_unit.value_or(placement.metres_per_unit.value_or(1.0));
   const Affine place = to_scene(metres, model.up.value_or(placement.up.value_or(Up::z)), placement.transform);
-  const bool mirrored = place.determinant() < 0;
+  const bool mirrored = place.mirrors();
 
   const std::string stem = file.stem().string();
   const std::vector<MaterialId> material = add_materials(scene, model, file, by_scene_file);

@@ -1,0 +1,154 @@
+#include "io/formats/model_bytes.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
+
+namespace clerestory {
+namespace {
+
+/// One walk over all parts of a Model serves writing and reading, so that they cannot differ.
+class Writer {
+ public:
+  template <class T>
+  void plain(T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+  }
+  template <class T>
+  void array(std::vector<T>& values) {
+    size(values);
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  }
+  void string(std::string& s) {
+    size(s);
+    bytes += s;
+  }
+  template <class Container>
+  void size(Container& container) {
+    std::uint64_t n = container.size();
+    plain(n);
+  }
+  std::string bytes;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+
+  template <class T>
+  void plain(T& value) {
+    std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
+  }
+  template <class T>
+  void array(std::vector<T>& values) {
+    const std::uint64_t n = count(sizeof(T));
+    values.resize(n);
+    const std::string_view from = take(n * sizeof(T));
+    if (n > 0) std::memcpy(static_cast<void*>(values.data()), from.data(), from.size());
+  }
+  void string(std::string& s) { s = take(count(1)); }
+  template <class Container>
+  void size(Container& container) {
+    container.resize(count(1));
+  }
+  bool at_end() const { return rest_.empty(); }
+
+ private:
+  std::uint64_t count(std::size_t bytes_each) {
+    std::uint64_t n = 0;
+    plain(n);
+    if (n > rest_.size() / bytes_each) throw std::runtime_error("model bytes are cut off");
+    return n;
+  }
+  std::string_view take(std::uint64_t n) {
+    if (n > rest_.size()) throw std::runtime_error("model bytes are cut off");
+    const std::string_view taken = rest_.substr(0, n);
+    rest_.remove_prefix(n);
+    return taken;
+  }
+  std::string_view rest_;
+};
+
+template <class Walker, class T, class Visit>
+void each(Walker& walker, std::vector<T>& values, const Visit& visit) {
+  walker.size(values);
+  for (T& value : values) visit(value);
+}
+
+template <class Walker, class T>
+void maybe(Walker& walker, std::optional<T>& value) {
+  bool there = value.has_value();
+  walker.plain(there);
+  if (there && !value) value.emplace();
+  if (there) walker.plain(*value);
+}
+
+template <class Walker>
+void walk(Walker& walker, Model& model) {
+  walker.array(model.polygons.vertices);
+  walker.array(model.polygons.corner);
+  walker.array(model.polygons.face_begin);
+  walker.array(model.polygons.material);
+  walker.array(model.polygons.surface);
+  each(walker, model.materials, [&](ModelMaterial& m) {
+    walker.string(m.material.name);
+    walker.plain(m.material.kind);
+    walker.plain(m.material.reflectance);
+    walker.plain(m.material.transmittance);
+    walker.plain(m.material.exitance);
+    maybe(walker, m.material.total_power);
+    walker.plain(m.material.sides);
+    walker.plain(m.described);
+    walker.plain(m.textured);
+    walker.plain(m.unitless_glow);
+  });
+  each(walker, model.surfaces, [&](std::string& name) { walker.string(name); });
+  each(walker, model.lights.points, [&](PointLuminaire& light) {
+    walker.string(light.name);
+    walker.plain(light.position);
+    walker.plain(light.power);
+  });
+  each(walker, model.lights.spots, [&](SpotLuminaire& light) {
+    walker.string(light.name);
+    walker.plain(light.position);
+    walker.plain(light.direction);
+    walker.plain(light.intensity);
+    walker.plain(light.inner_angle);
+    walker.plain(light.outer_angle);
+  });
+  walker.array(model.lights.suns);
+  each(walker, model.warnings, [&](std::string& warning) { walker.string(warning); });
+  maybe(walker, model.metres_per_unit);
+  maybe(walker, model.up);
+}
+
+bool is_consistent(const Model& model) {
+  const PolygonSoup& soup = model.polygons;
+  const std::size_t faces = soup.material.size();
+  return soup.surface.size() == faces && soup.face_begin.size() == faces + 1 && soup.face_begin.front() == 0 &&
+         soup.face_begin.back() == soup.corner.size() &&
+         std::is_sorted(soup.face_begin.begin(), soup.face_begin.end()) &&
+         std::all_of(soup.corner.begin(), soup.corner.end(), [&](auto c) { return c < soup.vertices.size(); }) &&
+         std::all_of(soup.material.begin(), soup.material.end(), [&](auto m) { return m < model.materials.size(); }) &&
+         std::all_of(soup.surface.begin(), soup.surface.end(), [&](auto s) { return s < model.surfaces.size(); });
+}
+
+}  // namespace
+
+std::string to_bytes(const Model& model) {
+  Writer writer;
+  walk(writer, const_cast<Model&>(model));  // writing changes nothing
+  return std::move(writer.bytes);
+}
+
+Model from_bytes(std::string_view bytes) {
+  Reader reader(bytes);
+  Model model;
+  walk(reader, model);
+  if (!reader.at_end() || !is_consistent(model)) throw std::runtime_error("model bytes do not fit together");
+  return model;
+}
+
+}  // namespace clerestory

@@ -17,29 +17,21 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
   closure.arrives = closure.escapes = Field(n, patches.channels);
   closure.rays = n * static_cast<std::size_t>(rays_per_patch);
   // The first few neighbours of each patch are enough to tell spaces apart.
-  constexpr std::size_t kNeighbours = 16;
+  constexpr int kNeighbours = 16;
   std::vector<std::array<PatchId, kNeighbours>> neighbours(n);
   parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
-    std::array<Ray, 16> rays;
-    std::array<Hit, 16> hits;
     for (std::size_t i = begin; i < end; ++i) {
       const Frame frame(patches.normal[i]);
       const auto corners = patches.corner_positions(PatchId{i});
       Spectrum arrives(0.0), escapes(0.0);
-      for (int first = 0; first < rays_per_patch; first += 16) {
-        for (std::size_t k = 0; k < 16; ++k) {
-          const auto u = sobol4(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(k),
-                                stream_key(seed, kClosureRays, i));
-          rays[k] = {point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
-                     cosine_direction(frame, u[0], u[1])};
-        }
-        problem.rays.first_hits(patches, rays, hits);
-        if (first == 0)
-          for (std::size_t k = 0; k < kNeighbours; ++k) neighbours[i][k] = hits[k].patch;
-        for (const Hit& hit : hits) {
-          if (hit.escaped()) escapes += hit.transmittance;
-          if (hit.patch.valid()) arrives += hit.transmittance;
-        }
+      for (int k = 0; k < rays_per_patch; ++k) {
+        const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(seed, kClosureRays, i));
+        const Hit hit = problem.rays.first_hit(
+            patches, {point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
+                      cosine_direction(frame, u[0], u[1])});
+        if (hit.escaped()) escapes += hit.transmittance;
+        if (hit.patch.valid()) arrives += hit.transmittance;
+        if (k < kNeighbours) neighbours[i][static_cast<std::size_t>(k)] = hit.patch;
       }
       closure.arrives.set(i, arrives / rays_per_patch);
       closure.escapes.set(i, escapes / rays_per_patch);

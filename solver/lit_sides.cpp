@@ -1,7 +1,6 @@
 #include "solver/lit_sides.h"
 
 #include <algorithm>
-#include <array>
 
 #include "solver/lights/sun.h"
 #include "solver/model/parallel.h"
@@ -27,19 +26,13 @@ Seen look_around(const Problem& problem, std::size_t i, int ray_count, std::uint
   const auto corners = patches.corner_positions(PatchId{i});
   const double lift = problem.rays.lift();
   const std::uint64_t key = stream_key(seed, kSideRays, i);
-  std::array<Ray, 16> rays;
-  std::array<Hit, 16> hits;
   Seen seen;
-  for (int first = 0; first < ray_count; first += 16) {
-    for (std::size_t k = 0; k < 16; ++k) {
-      const auto u = sobol4(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(k), key);
-      rays[k] = {point_on_triangle(corners, u[2], u[3]) + frame.n * lift, cosine_direction(frame, u[0], u[1])};
-    }
-    problem.rays.first_hits(patches, rays, hits);
-    for (const Hit& hit : hits) {
-      seen.outside = seen.outside || hit.escaped();
-      if (hit.patch.valid()) seen.patches.push_back(hit.patch);
-    }
+  for (int k = 0; k < ray_count; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+    const Hit hit = problem.rays.first_hit(
+        patches, {point_on_triangle(corners, u[2], u[3]) + frame.n * lift, cosine_direction(frame, u[0], u[1])});
+    seen.outside = seen.outside || hit.escaped();
+    if (hit.patch.valid()) seen.patches.push_back(hit.patch);
   }
   for (const Sun& sun : problem.lights.suns) {
     for (int k = 0; k < 16 && !seen.sun; ++k) {

@@ -83,18 +83,13 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
   const Frame frame(problem.patches.normal[patch]);
   const auto corners = problem.patches.corner_positions(PatchId{patch});
   const std::uint64_t key = stream_key(options.seed, kSkyRays, patch);
-  std::array<Ray, 16> rays;
-  std::array<Hit, 16> hits;
   Spectrum sum(0.0);
-  for (int first = 0; first < options.sky_rays; first += 16) {
-    for (std::size_t k = 0; k < 16; ++k) {
-      const auto u = sobol4(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(k), key);
-      rays[k] = {point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
-                 cosine_direction(frame, u[0], u[1])};
-    }
-    problem.rays.first_hits(problem.patches, rays, hits);
-    for (std::size_t k = 0; k < 16; ++k)
-      if (hits[k].escaped()) sum += light.sky(rays[k].direction) * hits[k].transmittance;
+  for (int k = 0; k < options.sky_rays; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+    const Ray ray{point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
+                  cosine_direction(frame, u[0], u[1])};
+    const Hit hit = problem.rays.first_hit(problem.patches, ray);
+    if (hit.escaped()) sum += light.sky(ray.direction) * hit.transmittance;
   }
   return sum * (std::numbers::pi / options.sky_rays);
 }
@@ -105,21 +100,15 @@ void balance_lamp(const Problem& problem, const Lamp& lamp, std::size_t number, 
                   const DirectOptions& options) {
   constexpr std::uint32_t kRays = 1 << 14;
   const std::uint64_t key = stream_key(options.seed, kLampRays, number);
-  std::array<Ray, 16> rays;
-  std::array<Hit, 16> hits;
   double sent = 0, arrived = 0, escaped = 0;
-  for (std::uint32_t first = 0; first < kRays; first += 16) {
-    for (std::uint32_t k = 0; k < 16; ++k) {
-      const auto u = sobol4(first + k, key);
-      rays[k] = {lamp.position, sphere_direction(u[0], u[1])};
-    }
-    problem.rays.first_hits(problem.patches, rays, hits);
-    for (std::size_t k = 0; k < 16; ++k) {
-      const double I = luminous_mean(intensity(lamp, rays[k].direction));
-      const double passed = luminous_mean(intensity(lamp, rays[k].direction) * hits[k].transmittance);
-      sent += I;
-      (hits[k].escaped() ? escaped : arrived) += hits[k].escaped() || hits[k].patch.valid() ? passed : 0;
-    }
+  for (std::uint32_t k = 0; k < kRays; ++k) {
+    const auto u = sobol4(k, key);
+    const Ray ray{lamp.position, sphere_direction(u[0], u[1])};
+    const Hit hit = problem.rays.first_hit(problem.patches, ray);
+    const Spectrum I = intensity(lamp, ray.direction);
+    sent += luminous_mean(I);
+    if (hit.escaped()) escaped += luminous_mean(I * hit.transmittance);
+    if (hit.patch.valid()) arrived += luminous_mean(I * hit.transmittance);
   }
   const double flux = luminous_mean(power(lamp));
   direct.rays += kRays;

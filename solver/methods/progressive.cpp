@@ -100,19 +100,12 @@ void trace(const Problem& problem, const Piece& piece, std::uint64_t seed, std::
   const auto corners = patches.corner_positions(PatchId{piece.from});
   const std::uint64_t key = stream_key(seed, kShotRays, piece.from);
   const Vec3 lifted = frame.n * problem.rays.lift();
-  std::array<Ray, 16> rays;
-  std::array<Hit, 16> hits;
-  for (std::uint32_t first = 0; first < piece.count; first += 16) {
-    const std::uint32_t count = std::min<std::uint32_t>(16, piece.count - first);
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const auto u = sobol4(piece.first + first + k, key);
-      rays[k] = {point_on_triangle(corners, u[2], u[3]) + lifted, cosine_direction(frame, u[0], u[1])};
-    }
-    problem.rays.first_hits(patches, std::span(rays).first(count), std::span(hits).first(count));
-    for (std::uint32_t k = 0; k < count; ++k) {
-      landings[first + k] = {hits[k].patch, hits[k].escaped()};
-      if (!passed.empty()) passed[first + k] = hits[k].transmittance;
-    }
+  for (std::uint32_t k = 0; k < piece.count; ++k) {
+    const auto u = sobol4(piece.first + k, key);
+    const Hit hit = problem.rays.first_hit(
+        patches, {point_on_triangle(corners, u[2], u[3]) + lifted, cosine_direction(frame, u[0], u[1])});
+    landings[k] = {hit.patch, hit.escaped()};
+    if (!passed.empty()) passed[k] = hit.transmittance;
   }
 }
 

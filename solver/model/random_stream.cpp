@@ -24,34 +24,40 @@ constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   return reverse_bits(scramble_reversed(reverse_bits(x), seed));
 }
 
-/// Direction numbers of dimensions 1 to 3 (dimension 0 is the bit reversal), from primitive polynomials of degree
-/// 1, 2, 3 with initial numbers {1}, {1, 3}, {1, 3, 1} of the new-joe-kuo-6 table.
-struct Directions {
-  std::uint32_t v[3][32];
+/// Sobol points of dimensions 1 to 3 (dimension 0 is the bit reversal) for each value of each byte of the index; a point
+/// is the exclusive or over its bytes. From primitive polynomials of degree 1, 2, 3 with initial numbers {1}, {1, 3},
+/// {1, 3, 1} of the new-joe-kuo-6 table.
+struct SobolTable {
+  std::uint32_t x[4][256][3];  ///< by byte, its value, dimension - 1
 };
 
-constexpr Directions make_directions() {
-  Directions d{};
+SobolTable make_table() {
   struct Polynomial {
     int degree;
     std::uint32_t coefficients, first[3];
   };
   constexpr Polynomial polynomials[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
+  SobolTable table{};
   for (int dim = 0; dim < 3; ++dim) {
     const auto& [s, a, m] = polynomials[dim];
+    std::uint32_t v[32];
     for (int i = 0; i < 32; ++i) {
       if (i < s) {
-        d.v[dim][i] = m[i] << (31 - i);
+        v[i] = m[i] << (31 - i);
         continue;
       }
-      d.v[dim][i] = d.v[dim][i - s] ^ (d.v[dim][i - s] >> s);
-      for (int k = 1; k < s; ++k) d.v[dim][i] ^= ((a >> (s - 1 - k)) & 1u) * d.v[dim][i - k];
+      v[i] = v[i - s] ^ (v[i - s] >> s);
+      for (int k = 1; k < s; ++k) v[i] ^= ((a >> (s - 1 - k)) & 1u) * v[i - k];
     }
+    for (int byte = 0; byte < 4; ++byte)
+      for (int value = 0; value < 256; ++value)
+        for (int bit = 0; bit < 8; ++bit)
+          if (value >> bit & 1) table.x[byte][value][dim] ^= v[8 * byte + bit];
   }
-  return d;
+  return table;
 }
 
-constexpr Directions kDirections = make_directions();
+const SobolTable kTable = make_table();
 
 }  // namespace
 
@@ -59,9 +65,8 @@ std::array<double, 4> sobol4(std::uint32_t index, std::uint64_t key) {
   const auto key_low = static_cast<std::uint32_t>(key), key_high = static_cast<std::uint32_t>(key >> 32);
   const std::uint32_t i = owen_scramble(index, key_low);  // shuffles the order within every power of two
   std::uint32_t x[4] = {reverse_bits(i), 0, 0, 0};
-  for (std::uint32_t bits = i, b = 0; bits; bits >>= 1, ++b)
-    if (bits & 1u)
-      for (int dim = 0; dim < 3; ++dim) x[dim + 1] ^= kDirections.v[dim][b];
+  for (int byte = 0; byte < 4; ++byte)
+    for (int dim = 0; dim < 3; ++dim) x[dim + 1] ^= kTable.x[byte][i >> (8 * byte) & 255][dim];
   std::array<double, 4> u;
   for (std::uint32_t dim = 0; dim < 4; ++dim) {
     const auto seed = static_cast<std::uint32_t>(mix_bits(key + 0x9e3779b97f4a7c15ULL * (dim + 1)) ^ key_high);

@@ -47,9 +47,10 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
 
-  /// First surface met by each ray, `patches` telling which side takes part as which patch.
-  void first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const;
+  /// First surface met, `patches` telling which side takes part as which patch.
   Hit first_hit(const PatchSet& patches, const Ray& ray) const;
+  /// The same for rays that go nearly the same way, in packets of 16; scattered ones are faster one by one.
+  void first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const;
 
   /// Bit k is set when nothing opaque blocks segment k; glass is ignored. `active` has a bit for each segment to test.
   std::uint16_t visible16(const SegmentPacket& segments, std::uint16_t active = 0xffff) const;

@@ -26,6 +26,11 @@ int thread_count() {
   return std::min(static_cast<int>(allowed), tbb::info::default_concurrency());
 }
 
+void on_one_thread(const std::function<void()>& body) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  body();
+}
+
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (n == 0) return;
   tbb::parallel_for(

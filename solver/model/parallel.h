@@ -10,6 +10,10 @@ namespace clerestory {
 void set_thread_count(int threads);
 int thread_count();
 
+/// Calls body() while nothing in the process uses more than one thread: for libraries whose parallel loops would leave
+/// traces in the result.
+void on_one_thread(const std::function<void()>& body);
+
 /// Calls body(begin, end) for disjoint ranges that cover [0, n), at most `grain` long, on several threads. Bodies write
 /// only to what their indices own, so the result does not depend on how ranges fall on threads.
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t begin, std::size_t end)>& body);

@@ -7,13 +7,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "solver/model/parallel.h"
+
 namespace clerestory {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Device {
-  RTCDevice handle = rtcNewDevice("threads=1,set_affinity=0");
+  RTCDevice handle = rtcNewDevice("set_affinity=0");
   Device() {
     if (!handle) throw std::runtime_error("Embree: no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
   }
@@ -106,8 +108,10 @@ RayScene::RayScene(const PatchSet& patches) : impl_(std::make_unique<Impl>()) {
     upper = {std::max(upper.x, v.x), std::max(upper.y, v.y), std::max(upper.z, v.z)};
   }
   impl_->diameter = patches.vertices.empty() ? 0 : length(upper - lower);
-  impl_->opaque.build(impl_->device.handle, patches, false);
-  impl_->glass.build(impl_->device.handle, patches, true);
+  on_one_thread([&] {  // the tree decides which of two equally near triangles is met
+    impl_->opaque.build(impl_->device.handle, patches, false);
+    impl_->glass.build(impl_->device.handle, patches, true);
+  });
   for (const std::uint32_t t : impl_->glass.of_primitive)
     impl_->glass_share.push_back(patches.materials[patches.side_material[t][kFront]].transmittance);
 }

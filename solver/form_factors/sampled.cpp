@@ -30,7 +30,8 @@ const std::array<Pattern, kPatterns>& patterns() {
     for (std::size_t p = 0; p < kPatterns; ++p)
       for (std::size_t k = 0; k < kQuickSamples; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(0x7061747465726e, p));
-        for (std::size_t dim = 0; dim < 4; ++dim) (*made)[p][k / kLanes].u[dim][k % kLanes] = static_cast<float>(u[dim]);
+        for (std::size_t dim = 0; dim < 4; ++dim)
+          (*made)[p][k / kLanes].u[dim][k % kLanes] = static_cast<float>(u[dim]);
       }
     return made;
   }();
@@ -56,11 +57,7 @@ struct LocalTriangle {
 class PairSampler {
  public:
   PairSampler(const SampledTriangle& p, const SampledTriangle& q, const RayScene& rays)
-      : origin_(p.corner[0]),
-        p_(p, origin_),
-        q_(q, origin_),
-        rays_(rays),
-        lift_(static_cast<float>(rays.lift())) {}
+      : origin_(p.corner[0]), p_(p, origin_), q_(q, origin_), rays_(rays), lift_(static_cast<float>(rays.lift())) {}
 
   /// Kernel of each point pair, 0 where one does not face the other.
   std::array<float, kLanes> kernel;
@@ -154,8 +151,6 @@ SampledVisibility sample_visibility_quick(const SampledTriangle& p, const Sample
       weight += w, passed += w * v;
       weight2 += w * w, weight2_share += w * w * v, weight2_share2 += w * w * v * v;
     }
-    // Sixteen that agree are enough: what they miss is within their standard error.
-    if (samples > 0 && least == most) break;
   }
   if (weight <= 0) return {0, 0, sampler.rays_cast};
   const double V = passed / weight;

@@ -22,9 +22,11 @@ struct SampledVisibility {
 };
 
 /// Visible part of the exchange between two triangles,
-///   V = int int v k dx dy / int int k dx dy,   k = cos cos / (pi r2) at the point pair, v = 1 if it is unblocked, else 0
-/// by 16 stratified point pairs, and 64 when these disagree; both integrals share the points, so that V stays in 0..1.
-/// Every pair counts with its kernel: near touching patches the unweighted share of free segments is 2 % off.
+///   V = int int v k dx dy / int int k dx dy,   k = cos cos / (pi r2) at the point pair, v = 1 if it is unblocked, else
+///   0
+/// by 64 stratified point pairs; both integrals share the points, so that V stays in 0..1. Every pair counts with its
+/// kernel: near touching patches the unweighted share of free segments is 2 % off. Stopping after 16 that agree would
+/// save half the rays and was tried: patches that see the room through a narrow gap lost 0.5 % of their row sum.
 /// Glass counts with the mean share that it lets through.
 ///
 /// key       of the random stream, from (seed, p, q).

@@ -49,8 +49,10 @@ struct BoxShaft {
         for (const Box* box : boxes)
           low = std::min(low, least_height(*box, n)), high = std::max(high, -least_height(*box, -n));
         const double here = n[u] * au + n[v] * av, slack = 1e-12 * (std::abs(here) + across);
-        if (high <= here + slack) hold(n, high);
-        else if (low >= here - slack) hold(-n, -low);
+        if (high <= here + slack)
+          hold(n, high);
+        else if (low >= here - slack)
+          hold(-n, -low);
       }
     }
   }
@@ -60,21 +62,10 @@ struct BoxShaft {
     if (box.lower.x >= bounds.upper.x - touching || box.upper.x <= bounds.lower.x + touching ||
         box.lower.y >= bounds.upper.y - touching || box.upper.y <= bounds.lower.y + touching ||
         box.lower.z >= bounds.upper.z - touching || box.upper.z <= bounds.lower.z + touching)
-      // A flat shaft or a flat blocker has no inside along that axis; only true separation counts there.
-      if (separated_or_flat(box, touching)) return false;
+      return false;
     for (std::size_t k = 0; k < sides; ++k)
       if (least_height(box, normal[k]) >= offset[k] - touching) return false;
     return true;
-  }
-
- private:
-  bool separated_or_flat(const Box& box, double touching) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool flat_shaft = bounds.upper[axis] - bounds.lower[axis] <= 2 * touching;
-      const double margin = flat_shaft ? -touching : touching;
-      if (box.lower[axis] >= bounds.upper[axis] - margin || box.upper[axis] <= bounds.lower[axis] + margin) return true;
-    }
-    return false;
   }
 };
 
@@ -112,38 +103,48 @@ Blockers::Blockers(const PatchSet& patches) {
       blocks[t] = above && below;
     }
   });
-  std::vector<Box> boxes;
   for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
     if (!blocks[t]) continue;
     const auto& c = patches.corners[t];
-    const std::array<Vec3, 3> corner{patches.vertices[c[0]], patches.vertices[c[1]], patches.vertices[c[2]]};
-    boxes.push_back(Box::around(corner));
+    Blocker b;
+    for (std::size_t k = 0; k < 3; ++k) b.corner[k] = patches.vertices[c[k]];
+    b.normal = normalized(cross(b.corner[1] - b.corner[0], b.corner[2] - b.corner[0]));
+    b.offset = dot(b.normal, b.corner[0]);
+    triangles_.push_back(b);
   }
-  triangles_ = boxes.size();
-  nodes_.reserve(2 * boxes.size());
-  if (!boxes.empty()) build(boxes);
+  nodes_.reserve(2 * triangles_.size());
+  if (!triangles_.empty()) build(0, triangles_.size());
 }
 
-std::uint32_t Blockers::build(std::span<Box> boxes) {
+std::uint32_t Blockers::build(std::size_t begin, std::size_t end) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
+  const auto triangles = std::span(triangles_).subspan(begin, end - begin);
   Box all = kEmptyBox, centres = kEmptyBox;
-  for (const Box& box : boxes) all.grow(box), centres.grow({centre(box), centre(box)});
+  for (const Blocker& b : triangles) {
+    const Box box = Box::around(b.corner);
+    all.grow(box), centres.grow({centre(box), centre(box)});
+  }
   nodes_[index].box = all;
-  if (boxes.size() == 1) return index;
+  if (triangles.size() == 1) {
+    nodes_[index].blocker = static_cast<std::uint32_t>(begin);
+    return index;
+  }
   const Vec3 extent = centres.upper - centres.lower;
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-  const auto middle = boxes.begin() + static_cast<std::ptrdiff_t>(boxes.size() / 2);
-  std::nth_element(boxes.begin(), middle, boxes.end(),
-                   [axis](const Box& a, const Box& b) { return centre(a)[axis] < centre(b)[axis]; });
-  build(boxes.first(boxes.size() / 2));
-  const std::uint32_t right = build(boxes.subspan(boxes.size() / 2));
+  const std::size_t half = triangles.size() / 2;
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half), triangles.end(),
+                   [axis](const Blocker& a, const Blocker& b) {
+                     return centre(Box::around(a.corner))[axis] < centre(Box::around(b.corner))[axis];
+                   });
+  build(begin, begin + half);
+  const std::uint32_t right = build(begin + half, end);
   nodes_[index].right = right;
   return index;
 }
 
-void Blockers::in_shaft(const Box& a, const Box& b, std::vector<Box>& boxes) const {
-  boxes.clear();
+void Blockers::in_shaft(const Box& a, const Box& b, std::vector<const Blocker*>& found) const {
+  found.clear();
   if (nodes_.empty()) return;
   const BoxShaft shaft(a, b);
   std::array<std::uint32_t, 64> stack;
@@ -154,7 +155,7 @@ void Blockers::in_shaft(const Box& a, const Box& b, std::vector<Box>& boxes) con
     const Node& node = nodes_[index];
     if (!shaft.reaches(node.box, touching_)) continue;
     if (node.right == 0) {
-      boxes.push_back(node.box);
+      found.push_back(&triangles_[node.blocker]);
     } else {
       stack[depth++] = node.right;
       stack[depth++] = index + 1;
@@ -164,7 +165,7 @@ void Blockers::in_shaft(const Box& a, const Box& b, std::vector<Box>& boxes) con
 
 PairShaft::PairShaft(std::span<const Vec3, 3> p, const Vec3& normal_p, std::span<const Vec3, 3> q, const Vec3& normal_q,
                      double touching)
-    : touching_(touching) {
+    : corner_{p[0], p[1], p[2], q[0], q[1], q[2]}, touching_(touching) {
   hold(-normal_p, -dot(normal_p, p[0]));
   hold(-normal_q, -dot(normal_q, q[0]));
   bounds_ = Box::around(p);
@@ -177,8 +178,12 @@ PairShaft::PairShaft(std::span<const Vec3, 3> p, const Vec3& normal_p, std::span
         const double h0 = dot(n, opposite), h1 = dot(n, corners[(c + 1) % 3] - start),
                      h2 = dot(n, corners[(c + 2) % 3] - start);
         // The plane holds the hull when its other three corners lie on one side of it.
-        if (h0 <= 0 && h1 <= 0 && h2 <= 0) hold_scaled(n, start);
-        else if (h0 >= 0 && h1 >= 0 && h2 >= 0) hold_scaled(-n, start);
+        const double l = length(n), slack = l * touching_;
+        if (l <= 1e-9 * dot(along, along)) continue;  // the corner lies on the edge's line: no plane
+        if (h0 <= slack && h1 <= slack && h2 <= slack)
+          hold(n / l, dot(n, start) / l);
+        else if (h0 >= -slack && h1 >= -slack && h2 >= -slack)
+          hold(-n / l, -dot(n, start) / l);
       }
     }
   };
@@ -186,18 +191,22 @@ PairShaft::PairShaft(std::span<const Vec3, 3> p, const Vec3& normal_p, std::span
   side_planes(q, p);
 }
 
-void PairShaft::hold_scaled(const Vec3& normal, const Vec3& point) {
-  const double l = length(normal);
-  if (l > 0) hold(normal / l, dot(normal, point) / l);
-}
-
-bool PairShaft::reaches(const Box& box) const {
-  if (box.lower.x > bounds_.upper.x || box.upper.x < bounds_.lower.x || box.lower.y > bounds_.upper.y ||
-      box.upper.y < bounds_.lower.y || box.lower.z > bounds_.upper.z || box.upper.z < bounds_.lower.z)
+bool PairShaft::reached_by(const Blocker& blocker) const {
+  const auto& [a, b, c] = blocker.corner;
+  if (std::max({a.x, b.x, c.x}) < bounds_.lower.x || std::min({a.x, b.x, c.x}) > bounds_.upper.x ||
+      std::max({a.y, b.y, c.y}) < bounds_.lower.y || std::min({a.y, b.y, c.y}) > bounds_.upper.y ||
+      std::max({a.z, b.z, c.z}) < bounds_.lower.z || std::min({a.z, b.z, c.z}) > bounds_.upper.z)
     return false;
-  for (std::size_t k = 0; k < sides_; ++k)
-    if (least_height(box, side_[k].normal) >= side_[k].offset - touching_) return false;
-  return true;
+  for (std::size_t k = 0; k < sides_; ++k) {
+    const auto& [normal, offset] = side_[k];
+    if (std::min({dot(normal, a), dot(normal, b), dot(normal, c)}) >= offset - touching_) return false;
+  }
+  bool above = false, below = false;
+  for (const Vec3& x : corner_) {
+    const double height = dot(blocker.normal, x) - blocker.offset;
+    above |= height > touching_, below |= height < -touching_;
+  }
+  return above && below;
 }
 
 }  // namespace clerestory

@@ -8,8 +8,8 @@
 namespace clerestory {
 
 std::string short_name(const std::filesystem::path& file) {
-  const std::string name = file.filename().string();
-  return name.empty() ? file.string() : name;
+  const std::string name = clean_text(file.filename().string());
+  return name.empty() ? clean_text(file.string()) : name;
 }
 
 void check_input_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {

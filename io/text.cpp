@@ -45,13 +45,40 @@ std::optional<double> to_number(std::string_view s) {
   return error == std::errc{} ? std::optional(value) : std::nullopt;
 }
 
-std::string quotable(std::string_view s) {
-  constexpr std::size_t kLongest = 60;
-  std::string clean(s.substr(0, kLongest));
-  for (char& c : clean) {
-    if (c < 0x20 || c == 0x7f) c = '?';
+std::string clean_text(std::string_view s) {
+  std::string clean;
+  clean.reserve(s.size());
+  for (std::size_t i = 0; i < s.size();) {
+    const auto byte = [&](std::size_t k) { return i + k < s.size() ? static_cast<unsigned char>(s[i + k]) : 0u; };
+    const auto goes_on = [&](std::size_t k) { return (byte(k) & 0xc0u) == 0x80u; };
+    const unsigned a = byte(0), b = byte(1);
+    std::size_t length = 0;  // 0: no character starts here. The bounds on b rule out long forms and surrogates.
+    if (a < 0x80) {
+      length = a >= 0x20 && a != 0x7f ? 1 : 0;
+    } else if (a >= 0xc2 && a <= 0xdf) {
+      length = goes_on(1) ? 2 : 0;
+    } else if (a >= 0xe0 && a <= 0xef) {
+      const bool legal = !(a == 0xe0 && b < 0xa0) && !(a == 0xed && b > 0x9f);
+      length = legal && goes_on(1) && goes_on(2) ? 3 : 0;
+    } else if (a >= 0xf0 && a <= 0xf4) {
+      const bool legal = !(a == 0xf0 && b < 0x90) && !(a == 0xf4 && b > 0x8f);
+      length = legal && goes_on(1) && goes_on(2) && goes_on(3) ? 4 : 0;
+    }
+    if (length == 0) {
+      clean += '?';
+      ++i;
+    } else {
+      clean += s.substr(i, length);
+      i += length;
+    }
   }
-  return s.size() > kLongest ? clean + "..." : clean;
+  return clean;
+}
+
+std::string quotable(std::string_view s, std::size_t longest) {
+  if (s.size() <= longest) return clean_text(s);
+  while (longest > 0 && (static_cast<unsigned char>(s[longest]) & 0xc0u) == 0x80u) --longest;  // not inside a character
+  return clean_text(s.substr(0, longest)) + "...";
 }
 
 }  // namespace clerestory

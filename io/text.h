@@ -24,7 +24,9 @@ std::string_view trimmed(std::string_view s);
 std::string_view next_word(std::string_view& rest);
 /// All of s as a number ("1e3", "-.5", "nan"); nothing when it is not one.
 std::optional<double> to_number(std::string_view s);
-/// s fit for a message: control and non-ASCII bytes replaced, cut when long.
-std::string quotable(std::string_view s);
+/// s with control characters and what is not UTF-8 replaced by '?': fit for messages, XML and JSON.
+std::string clean_text(std::string_view s);
+/// clean_text(s), cut when long.
+std::string quotable(std::string_view s, std::size_t longest = 60);
 
 }  // namespace clerestory

@@ -20,7 +20,6 @@ namespace clerestory {
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = 4ull << 30;
-constexpr std::size_t kMaxFaces = 100'000'000;
 
 std::string str(const aiString& s) { return {s.data, std::min<std::size_t>(s.length, sizeof(s.data) - 1)}; }
 

@@ -32,7 +32,8 @@ struct Model {
 };
 
 inline constexpr std::string_view kDefaultMaterial = "default";  ///< name where the model has none
-inline constexpr double kLargestCoordinate = 1e12;               ///< farther than this a coordinate is a mistake
+inline constexpr std::size_t kMaxFaces = 30'000'000;  ///< of one scene; more is a mistake, or a file made to do harm
+inline constexpr double kLargestCoordinate = 1e12;    ///< farther than this a coordinate is a mistake
 /// A model's white (Kd 1) reflects this much: nothing real reflects all, and closed white rooms would never darken.
 inline constexpr double kWhitestReflectance = 0.99;
 
@@ -42,6 +43,7 @@ inline constexpr double kWhitestReflectance = 0.99;
 Model read_model(const std::filesystem::path& file);
 
 Model read_obj(const std::filesystem::path& file);
+Model read_gltf(const std::filesystem::path& file);  ///< .gltf and .glb
 
 /// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`.
 std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings);

@@ -13,9 +13,9 @@ struct Format {
   Model (*read)(const std::filesystem::path&);
 };
 constexpr Format kFormats[] = {
-    {".obj", read_obj},         {".gltf", read_with_assimp}, {".glb", read_with_assimp},
-    {".ply", read_with_assimp}, {".stl", read_with_assimp},  {".off", read_with_assimp},
-    {".dae", read_with_assimp}, {".fbx", read_with_assimp},  {".ifc", read_with_assimp},
+    {".obj", read_obj},         {".gltf", read_gltf},       {".glb", read_gltf},
+    {".ply", read_with_assimp}, {".stl", read_with_assimp}, {".off", read_with_assimp},
+    {".dae", read_with_assimp}, {".fbx", read_with_assimp}, {".ifc", read_with_assimp},
 };
 
 }  // namespace

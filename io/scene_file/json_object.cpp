@@ -1,7 +1,6 @@
 #include "io/scene_file/json_object.h"
 
 #include <algorithm>
-#include <set>
 
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
@@ -9,8 +8,6 @@
 
 namespace clerestory {
 namespace {
-
-constexpr int kDeepest = 32;  // a scene file needs 4
 
 std::string_view type_words(const Json& value) {
   switch (value.type()) {
@@ -31,15 +28,6 @@ std::string_view type_words(const Json& value) {
     default:
       return "something else";
   }
-}
-
-/// Line and column, both from 1, of the byte at `offset`.
-std::string line_and_column(std::string_view bytes, std::size_t offset) {
-  const std::string_view before = bytes.substr(0, std::min(offset, bytes.size()));
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t line_start = before.rfind('\n');
-  const std::size_t column = 1 + before.size() - (line_start == before.npos ? 0 : line_start + 1);
-  return text(line, ":", column);
 }
 
 }  // namespace
@@ -148,35 +136,6 @@ std::optional<JsonColour> JsonObject::colour(std::string_view key, const Range& 
     colour.value.c[k] = checked_number(value[k], text(where, "[", k, "]"), range);
   }
   return colour;
-}
-
-Json parse_json_file(std::string_view bytes, const std::string& file_name) {
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
-  std::vector<std::set<std::string>> keys;  // of each object that is open
-  const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > kDeepest) throw InputError(text(file_name, ": is nested deeper than ", kDeepest, " levels"));
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get_ref<const std::string&>()).second) {
-      throw InputError(text(file_name, ": the key '", quotable(parsed.get_ref<const std::string&>()),
-                            "' is given twice in one object; which one counts?"));
-    }
-    return true;
-  };
-  try {
-    return Json::parse(bytes.begin(), bytes.end(), watch, true, true);
-  } catch (const Json::parse_error& error) {
-    // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ... - what; expected ..."
-    std::string what = error.what();
-    const std::size_t detail = what.find(": ");
-    if (detail != what.npos) what = what.substr(detail + 2);
-    const std::size_t offset = error.byte > 0 ? error.byte - 1 : 0;
-    throw InputError(text(file_name, ":", line_and_column(bytes, offset), ": is not valid JSON: ", what));
-  } catch (const Json::exception& error) {
-    std::string what = error.what();
-    const std::size_t detail = what.find("] ");
-    throw InputError(text(file_name, ": is not valid JSON: ", detail == what.npos ? what : what.substr(detail + 2)));
-  }
 }
 
 }  // namespace clerestory

@@ -79,10 +79,4 @@ const Json& as_array(const Json& value, const std::string& place, std::string_vi
 
 double checked_number(const Json& value, const std::string& place, const Range& range);
 
-/// Parses a file with `//` and `/* */` comments; refuses nesting deeper than 32, keys given twice, numbers beyond
-/// double.
-///
-/// throws  InputError with line and column.
-Json parse_json_file(std::string_view bytes, const std::string& file_name);
-
 }  // namespace clerestory

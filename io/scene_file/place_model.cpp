@@ -45,15 +45,17 @@ std::vector<MaterialId> add_materials(Scene& scene, const Model& model, const st
   std::vector<MaterialId> id(model.materials.size());
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
     if (!carried[m]) continue;
-    Material material = model.materials[m].material;
-    if (!by_scene_file(material)) material = own.settle(model.materials[m]);
+    ModelMaterial described = model.materials[m];
+    described.material.name = clean_text(described.material.name);
+    Material material = described.material;
+    if (!by_scene_file(material)) material = own.settle(described);
     const auto others_end = scene.materials.begin() + before;
     const auto same = std::find(scene.materials.begin(), others_end, material);
     if (same != others_end) {
       id[m] = MaterialId(static_cast<std::size_t>(same - scene.materials.begin()));
       continue;
     }
-    material.name = unused_name(material.name, file.stem().string(), taken);
+    material.name = unused_name(material.name, clean_text(file.stem().string()), taken);
     taken.insert(material.name);
     id[m] = MaterialId(scene.materials.size());
     scene.materials.push_back(std::move(material));
@@ -70,7 +72,7 @@ std::vector<SurfaceId> add_surfaces(Scene& scene, const Model& model, const std:
   for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
     if (!carried[s]) continue;
     id[s] = SurfaceId(scene.surfaces.size());
-    scene.surfaces.push_back(unused_name(model.surfaces[s], stem, taken));
+    scene.surfaces.push_back(unused_name(clean_text(model.surfaces[s]), stem, taken));
     taken.insert(scene.surfaces.back());
   }
   return id;
@@ -132,7 +134,7 @@ void place_model(Scene& scene, const Model& model, const std::filesystem::path& 
   const Affine place = to_scene(metres, model.up.value_or(placement.up.value_or(Up::z)), placement.transform);
   const bool mirrored = place.mirrors();
 
-  const std::string stem = file.stem().string();
+  const std::string stem = clean_text(file.stem().string());
   const std::vector<MaterialId> material = add_materials(scene, model, file, by_scene_file);
   const std::vector<SurfaceId> surface = add_surfaces(scene, model, stem);
   add_lights(scene, model.lights, place);

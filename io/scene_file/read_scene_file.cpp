@@ -6,6 +6,7 @@
 
 #include "io/formats/model.h"
 #include "io/input_file.h"
+#include "io/parse_json.h"
 #include "io/scene_file/json_object.h"
 #include "io/scene_file/light_entries.h"
 #include "io/scene_file/material_rules.h"
@@ -17,9 +18,8 @@
 namespace clerestory {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 64u << 20;
+constexpr std::uintmax_t kMaxBytes = 16u << 20;
 constexpr std::size_t kMaxGeometry = 10'000;
-constexpr std::size_t kMaxFaces = 100'000'000;  // a small file named often enough would fill the machine
 
 std::array<double, 16> read_transform(const JsonObject& object) {
   const std::vector<double> values = *object.numbers("transform", 16);
@@ -114,7 +114,7 @@ void report_rules(const std::vector<MaterialRule>& rules, const std::string& fil
 
 Scene read_scene_file(const std::filesystem::path& file) {
   const std::string name = short_name(file);
-  const Json json = parse_json_file(read_input_file(file, kMaxBytes), name);
+  const Json json = parse_json<Json>(read_input_file(file, kMaxBytes), name);
   const JsonObject root(
       json, name, {"geometry", "materials", "luminaires", "sky", "sun", "location", "time", "sensors", "solver"}, ": ");
   Scene scene;

@@ -1,0 +1,320 @@
+// glTF 2.0: nodes, meshes, materials, lights (KHR_lights_punctual, KHR_materials_emissive_strength), in double where
+// the file is. Read here and not by Assimp 5.2, which knows no emissive strength and keeps one node a light.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "io/formats/add_mesh.h"
+#include "io/formats/gltf_file.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kBrightest = 1e15;  // intensities beyond are mistakes
+
+Spectrum to_spectrum(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+void check_range(const GltfFile& file, const Spectrum& s, double most, const std::string& where) {
+  if (s.min() < 0 || s.max() > most) {
+    file.refuse(text(where, " = [", s[0], ", ", s[1], ", ", s[2], "] is outside [0, ", most, "]"));
+  }
+}
+
+/// The diffuse reflectance is the base colour; a metal reflects as much, only not diffusely.
+ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t index) {
+  const std::string where = text("materials[", index, "]");
+  ModelMaterial to;
+  to.material.name = text_member(file, json, "name", where);
+  if (to.material.name.empty()) to.material.name = text("material ", index);
+
+  static const Json kEmpty = Json::object();
+  const auto pbr = json.find("pbrMetallicRoughness");
+  const Json& base = pbr != json.end() && pbr->is_object() ? *pbr : kEmpty;
+  std::vector<double> colour =
+      finite_numbers(file, base, "baseColorFactor", {1, 1, 1, 1}, where + ".pbrMetallicRoughness");
+  to.textured = base.contains("baseColorTexture") || json.contains("emissiveTexture");
+  const Json& old_style = extension(json, "KHR_materials_pbrSpecularGlossiness");
+  if (!old_style.empty() && base.empty()) {
+    colour = finite_numbers(file, old_style, "diffuseFactor", {1, 1, 1, 1}, where);
+    to.textured = to.textured || old_style.contains("diffuseTexture");
+  }
+  to.material.reflectance = to_spectrum(colour);
+  check_range(file, to.material.reflectance, kBrightest, where + ".baseColorFactor");
+
+  // emissiveFactor x emissiveStrength is a luminance [cd/m2]; of each channel's share, as of grey, 179 lm make a watt.
+  const Spectrum glow = to_spectrum(finite_numbers(file, json, "emissiveFactor", {0, 0, 0}, where));
+  const double strength =
+      finite_number(file, extension(json, "KHR_materials_emissive_strength"), "emissiveStrength", 1, where);
+  const Spectrum luminance = glow * strength;
+  check_range(file, luminance, kBrightest, where + ": emissiveFactor x emissiveStrength");
+  to.material.exitance = luminance * (std::numbers::pi / kWhiteEfficacy);
+
+  const double passes =
+      finite_number(file, extension(json, "KHR_materials_transmission"), "transmissionFactor", 0, where);
+  if (text_member(file, json, "alphaMode", where) == "BLEND") {
+    apply_opacity(to.material, colour[3]);
+  } else if (passes > 0.5) {
+    to.material.kind = MaterialKind::glass;
+    for (int k = 0; k < kMaxChannels; ++k)
+      to.material.transmittance[k] = std::min(1.0, passes * to.material.reflectance[k]);
+    to.material.exitance = Spectrum(0.0);
+  }
+  return to;
+}
+
+/// p -> T R S p, or the matrix, which glTF stores column by column.
+Affine read_transform(const GltfFile& file, const Json& node, const std::string& where) {
+  Affine a;
+  if (node.contains("matrix")) {
+    const std::vector<double> m = finite_numbers(file, node, "matrix", std::vector<double>(16), where);
+    for (std::size_t r = 0; r < 3; ++r) a.A[r] = {m[r], m[4 + r], m[8 + r]};
+    a.b = {m[12], m[13], m[14]};
+    return a;
+  }
+  const auto t = finite_numbers(file, node, "translation", {0, 0, 0}, where);
+  auto q = finite_numbers(file, node, "rotation", {0, 0, 0, 1}, where);
+  const auto s = finite_numbers(file, node, "scale", {1, 1, 1}, where);
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(norm > 1e-6 && norm < 1e6)) file.refuse(where + ".rotation is no unit quaternion");
+  const double x = q[0] / norm, y = q[1] / norm, z = q[2] / norm, w = q[3] / norm;
+  a.A = {Vec3{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+         Vec3{2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+         Vec3{2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+  for (Vec3& row : a.A) row = {row.x * s[0], row.y * s[1], row.z * s[2]};
+  a.b = {t[0], t[1], t[2]};
+  return a;
+}
+
+/// Corners of the triangles of a strip or fan, in order, as a list.
+std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& in, std::size_t mode) {
+  if (mode == 4) return in;
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i + 2 < in.size(); ++i) {
+    if (mode == 5) out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
+    if (mode == 6) out.insert(out.end(), {in[i + 1], in[i + 2], in[0]});
+  }
+  return out;
+}
+
+class GltfReader {
+ public:
+  explicit GltfReader(const std::filesystem::path& path) : file_(path), stem_(path.stem().string()) {}
+
+  Model read() {
+    model_.metres_per_unit = 1.0;
+    model_.up = Up::y;
+    check_extensions();
+    for (std::size_t m = 0; m < file_.list("materials").size(); ++m) {
+      model_.materials.push_back(read_material(file_, file_.element("materials", m), m));
+    }
+    no_material_ = MaterialId(model_.materials.size());
+    ModelMaterial& none = model_.materials.emplace_back();
+    none.material.name = kDefaultMaterial;
+    none.described = false;
+    read_nodes();
+    if (left_out_ > 0) model_.warnings.push_back(text(left_out_, " primitives of points or lines are left out"));
+    if (skinned_) model_.warnings.push_back("skinned meshes are taken as they are stored, without their skeleton");
+    if (model_.polygons.face_count() == 0) file_.refuse("has no faces; nothing to light");
+    return std::move(model_);
+  }
+
+ private:
+  void check_extensions() {
+    for (const Json& name : file_.list("extensionsRequired")) {
+      if (!name.is_string()) continue;
+      if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression") {
+        file_.refuse(text("is compressed (", name.get<std::string>(), "); export it without mesh compression"));
+      }
+      if (name == "EXT_mesh_gpu_instancing") {
+        file_.refuse("uses EXT_mesh_gpu_instancing, which is not read; export the instances as nodes");
+      }
+    }
+  }
+
+  /// Nodes of the scene that is shown, each under its parent; without a scene, all that nobody has as child.
+  void read_nodes() {
+    struct Open {
+      std::size_t node;
+      Affine outer;
+    };
+    const Json& nodes = file_.list("nodes");
+    std::vector<bool> seen(nodes.size(), false);
+    std::vector<Open> open;
+    const std::vector<std::size_t> roots = root_nodes();
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, {}});
+    while (!open.empty()) {
+      const Open at = open.back();
+      open.pop_back();
+      const Json& node = file_.element("nodes", at.node);
+      const std::string where = text("nodes[", at.node, "]");
+      if (seen[at.node]) file_.refuse(where + " has two parents, or holds itself; nodes must form a tree");
+      seen[at.node] = true;
+      const Affine place = at.outer * read_transform(file_, node, where);
+      const std::vector<std::size_t> children = index_list(node, "children", where);
+      for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, place});
+      if (node.contains("mesh")) show_mesh(node, whole_number(file_, node, "mesh", 0, where), place, where);
+      const Json& light = extension(node, "KHR_lights_punctual");
+      if (light.contains("light")) add_light(whole_number(file_, light, "light", 0, where), place, node, where);
+    }
+  }
+
+  std::vector<std::size_t> index_list(const Json& object, const char* key, const std::string& where) {
+    std::vector<std::size_t> list;
+    const auto found = object.find(key);
+    if (found == object.end()) return list;
+    if (!found->is_array()) file_.refuse(text(where, ".", key, " must be an array"));
+    for (const Json& index : *found) {
+      if (!index.is_number_unsigned()) file_.refuse(text(where, ".", key, " must hold whole numbers"));
+      list.push_back(index.get<std::size_t>());
+    }
+    return list;
+  }
+
+  std::vector<std::size_t> root_nodes() {
+    if (!file_.list("scenes").empty()) {
+      const std::size_t scene = whole_number(file_, file_.root(), "scene", 0, file_.name());
+      return index_list(file_.element("scenes", scene), "nodes", text("scenes[", scene, "]"));
+    }
+    const std::size_t count = file_.list("nodes").size();
+    std::vector<bool> has_parent(count, false);
+    for (std::size_t n = 0; n < count; ++n) {
+      for (const std::size_t child : index_list(file_.element("nodes", n), "children", text("nodes[", n, "]"))) {
+        if (child < count) has_parent[child] = true;
+      }
+    }
+    std::vector<std::size_t> roots;
+    for (std::size_t n = 0; n < count; ++n) {
+      if (!has_parent[n]) roots.push_back(n);
+    }
+    return roots;
+  }
+
+  void show_mesh(const Json& node, std::size_t index, const Affine& place, const std::string& where) {
+    const Json& mesh = file_.element("meshes", index);
+    const std::string mesh_place = text("meshes[", index, "]");
+    std::string name = text_member(file_, node, "name", where);
+    if (name.empty()) name = text_member(file_, mesh, "name", mesh_place);
+    const SurfaceId surface(model_.surfaces.size());
+    model_.surfaces.push_back(names_.take(name.empty() ? stem_ : name));
+    skinned_ = skinned_ || node.contains("skin");
+    for (const LocalMesh& part : primitives(mesh, index, mesh_place)) {
+      // Vertices cost as well, even where few of them carry faces.
+      faces_ += std::max(part.face_begin.size() - 1, part.vertices.size() / 8);
+      if (faces_ > kMaxFaces) file_.refuse(text("more than ", kMaxFaces, " faces"));
+      add_mesh(model_, part, place, surface, file_.name());
+    }
+  }
+
+  /// The mesh decoded, once however often it is shown.
+  const std::vector<LocalMesh>& primitives(const Json& mesh, std::size_t index, const std::string& mesh_place) {
+    const auto [at, is_new] = decoded_.try_emplace(index);
+    if (!is_new) return at->second;
+    const auto list = mesh.find("primitives");
+    if (list == mesh.end() || !list->is_array()) file_.refuse(mesh_place + " has no primitives");
+    for (std::size_t p = 0; p < list->size(); ++p) {
+      const Json& primitive = (*list)[p];
+      const std::string where = text(mesh_place, ".primitives[", p, "]");
+      if (!primitive.is_object()) file_.refuse(where + " must be an object");
+      if (!extension(primitive, "KHR_draco_mesh_compression").empty()) {
+        file_.refuse(where + " is compressed (Draco); export it without mesh compression");
+      }
+      const std::size_t mode = whole_number(file_, primitive, "mode", 4, where);
+      if (mode < 4) {
+        ++left_out_;
+        continue;
+      }
+      if (mode > 6) file_.refuse(text(where, ".mode = ", mode, " is outside [0, 6]"));
+      if (auto part = decode(primitive, mode, where)) at->second.push_back(std::move(*part));
+    }
+    return at->second;
+  }
+
+  std::optional<LocalMesh> decode(const Json& primitive, std::size_t mode, const std::string& where) {
+    const auto attributes = primitive.find("attributes");
+    if (attributes == primitive.end() || !attributes->is_object() || !attributes->contains("POSITION"))
+      return std::nullopt;
+    LocalMesh mesh;
+    mesh.vertices = file_.positions(whole_number(file_, *attributes, "POSITION", 0, where + ".attributes"));
+    std::vector<std::uint32_t> order;
+    if (primitive.contains("indices")) {
+      order = file_.indices(whole_number(file_, primitive, "indices", 0, where));
+    } else {
+      order.resize(mesh.vertices.size());
+      for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+    }
+    mesh.corner = as_triangles(order, mode);
+    mesh.corner.resize(mesh.corner.size() / 3 * 3);
+    for (std::size_t c = 3; c <= mesh.corner.size(); c += 3) mesh.face_begin.push_back(static_cast<std::uint32_t>(c));
+    mesh.material = no_material_;
+    if (primitive.contains("material")) {
+      const std::size_t material = whole_number(file_, primitive, "material", 0, where);
+      file_.element("materials", material);
+      mesh.material = MaterialId(material);
+    }
+    return mesh;
+  }
+
+  /// Intensities are in candela, of a directional light in lux.
+  void add_light(std::size_t index, const Affine& place, const Json& node, const std::string& where) {
+    const Json& all = extension(file_.root(), "KHR_lights_punctual");
+    const auto list = all.find("lights");
+    if (list == all.end() || !list->is_array() || index >= list->size() || !(*list)[index].is_object()) {
+      file_.refuse(text(where, " uses light ", index, ", which is not there"));
+    }
+    const Json& light = (*list)[index];
+    const std::string of_light = text("lights[", index, "]");
+    const Spectrum colour = to_spectrum(finite_numbers(file_, light, "color", {1, 1, 1}, of_light));
+    const Spectrum photometric_intensity = colour * finite_number(file_, light, "intensity", 1, of_light);
+    check_range(file_, photometric_intensity, kBrightest, of_light + ": color x intensity");
+    const Spectrum intensity = photometric_intensity / kWhiteEfficacy;
+    std::string name = text_member(file_, node, "name", where);
+    if (name.empty()) name = text_member(file_, light, "name", of_light);
+    if (!is_finite(place.b) ||
+        std::max({std::abs(place.b.x), std::abs(place.b.y), std::abs(place.b.z)}) > kLargestCoordinate) {
+      file_.refuse(where + ": its light stands outside [-1e12, 1e12]");
+    }
+    const Vec3 aim = place.direction({0, 0, -1});
+    const std::string type = text_member(file_, light, "type", of_light);
+    if (type != "point" && !(length(aim) > 0 && std::isfinite(length(aim))))
+      file_.refuse(where + ": its light has no direction");
+    if (type == "point") {
+      model_.lights.points.push_back({name, place.b, intensity * (4 * std::numbers::pi), {}});
+    } else if (type == "spot") {
+      const auto cone = light.find("spot");
+      static const Json kEmpty = Json::object();
+      const Json& spot = cone != light.end() && cone->is_object() ? *cone : kEmpty;
+      const double inner = finite_number(file_, spot, "innerConeAngle", 0, of_light);
+      const double outer = finite_number(file_, spot, "outerConeAngle", std::numbers::pi / 4, of_light);
+      if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2 + 1e-6)) {
+        file_.refuse(
+            text(of_light, ": cone angles ", inner, " and ", outer, " are outside 0 <= inner < outer <= pi/2"));
+      }
+      model_.lights.spots.push_back({name, place.b, normalized(aim), intensity, inner, outer});
+    } else if (type == "directional") {
+      model_.lights.suns.push_back({-normalized(aim), intensity});
+    } else {
+      file_.refuse(text(of_light, ".type '", quotable(type), "' is not known; known are point, spot, directional"));
+    }
+  }
+
+  GltfFile file_;
+  std::string stem_;
+  Model model_;
+  UniqueNames names_;
+  std::unordered_map<std::size_t, std::vector<LocalMesh>> decoded_;
+  MaterialId no_material_;
+  std::size_t left_out_ = 0, faces_ = 0;
+  bool skinned_ = false;
+};
+
+}  // namespace
+
+Model read_gltf(const std::filesystem::path& file) { return GltfReader(file).read(); }
+
+}  // namespace clerestory

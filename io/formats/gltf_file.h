@@ -1,0 +1,68 @@
+#pragma once
+// A glTF 2.0 file as JSON and bytes: container, buffers, accessors. Only the glTF sources include this header, so JSON
+// stays inside. Source: Khronos, "glTF 2.0 specification", 2021.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "solver/model/vec.h"
+
+namespace clerestory {
+
+class GltfFile {
+ public:
+  using Json = nlohmann::json;
+
+  /// Reads .gltf or .glb, whichever the bytes are, with its buffers.
+  ///
+  /// throws  InputError naming the element, here and in all that follows.
+  explicit GltfFile(const std::filesystem::path& file);
+
+  const std::string& name() const { return name_; }
+  const Json& root() const { return root_; }
+
+  /// Member `list` of the root, which must be an array; an empty one when there is none.
+  const Json& list(const char* list) const;
+  /// Element of a list of the root, named by words such as "meshes[3]" when it is not there.
+  const Json& element(const char* list, std::size_t index) const;
+
+  std::vector<Vec3> positions(std::size_t accessor) const;
+  std::vector<std::uint32_t> indices(std::size_t accessor) const;
+
+  [[noreturn]] void refuse(const std::string& what) const;
+
+ private:
+  struct View {
+    std::string_view bytes;
+    std::size_t stride = 0;  // 0: tightly packed
+  };
+  View view(std::size_t buffer_view) const;
+  /// All components of an accessor, n of them an element, as numbers.
+  std::vector<double> numbers(std::size_t accessor, const char* type, std::size_t n) const;
+  std::string buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk) const;
+
+  std::filesystem::path file_;
+  std::string name_;
+  Json root_;
+  std::vector<std::string> buffers_;
+};
+
+/// Member `key` of an object as a whole number; `otherwise` when it is not there.
+std::size_t whole_number(const GltfFile& file, const nlohmann::json& object, const char* key, std::size_t otherwise,
+                         const std::string& where);
+/// Member `key` as a finite number.
+double finite_number(const GltfFile& file, const nlohmann::json& object, const char* key, double otherwise,
+                     const std::string& where);
+/// Member `key` as n finite numbers; `otherwise` when it is not there.
+std::vector<double> finite_numbers(const GltfFile& file, const nlohmann::json& object, const char* key,
+                                   std::vector<double> otherwise, const std::string& where);
+/// Member `key` as a text; empty when it is not there.
+std::string text_member(const GltfFile& file, const nlohmann::json& object, const char* key, const std::string& where);
+/// object.extensions.name, or an empty object.
+const nlohmann::json& extension(const nlohmann::json& object, const char* name);
+
+}  // namespace clerestory

@@ -1,7 +1,10 @@
 #pragma once
 // Options that several commands share.
 
+#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "io/read_scene.h"
 
@@ -22,6 +25,14 @@ void add_common_options(CLI::App& command, CommonArguments& arguments);
 
 /// INPUT, --unit, --up, --sky
 void add_input_options(CLI::App& command, std::string& input, ReadOptions& options);
+
+/// An option that takes one of some words.
+void add_choice(CLI::App& command, const std::string& name, std::optional<std::string>& value,
+                const std::vector<std::string>& choices, const std::string& help);
+
+/// An option that takes a name; `problem` says why not, or nothing.
+void add_checked_word(CLI::App& command, const std::string& name, std::optional<std::string>& value,
+                      const std::function<std::string(const std::string&)>& problem, const std::string& help);
 
 /// An option that takes a number above 0, with its unit in the help.
 void add_positive_option(CLI::App& command, const std::string& name, std::optional<double>& value,

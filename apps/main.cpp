@@ -38,17 +38,15 @@ std::vector<std::string> option_names(const CLI::App& command) {
 /// CLI11 says what was not expected; a person also wants to know what was.
 std::string usage_problem(const CLI::App& program, const CLI::ParseError& error) {
   const auto chosen = program.get_subcommands();
-  if (chosen.empty() && !program.remaining().empty())
-    return "'" + program.remaining().front() + "' is not a command; " +
-           nearest(program.remaining().front(), command_names(program));
-  if (!chosen.empty() && !chosen.front()->remaining().empty()) {
-    const std::string& extra = chosen.front()->remaining().front();
-    if (extra.starts_with("-"))
-      return "option '" + extra + "' is not known to " + chosen.front()->get_name() + "; " +
-             nearest(extra.substr(0, extra.find('=')), option_names(*chosen.front()));
-    return "'" + extra + "' is one argument too many";
-  }
-  return error.what();
+  const CLI::App& reader = chosen.empty() ? program : *chosen.front();
+  const std::vector<std::string> extra = reader.remaining();
+  if (extra.empty()) return error.what();
+  const std::string word = extra.front().substr(0, extra.front().find('='));
+  if (word.starts_with("-"))
+    return "option '" + word + "' is not known" + (chosen.empty() ? "" : " to " + reader.get_name()) + "; " +
+           nearest(word, option_names(reader));
+  if (chosen.empty()) return "'" + word + "' is not a command; " + nearest(word, command_names(program));
+  return "'" + word + "' is one argument too many";
 }
 
 int run_program(int argc, char** argv) {

@@ -56,7 +56,9 @@ Settings effective_settings(const SolveArguments& arguments, const Scene& scene)
   s.mesh.target_triangles = target_triangles(s.solve.accuracy);
   s.target_error = first_of(arguments.target_error, file.target_error);
   s.time_limit = first_of(arguments.time_limit, file.time_limit);
-  s.channels = arguments.grey ? 1 : arguments.channels.value_or(scene.channels());
+  s.channels = scene.channels();
+  if (arguments.channels) s.channels = *arguments.channels == "1" ? 1 : 3;
+  if (arguments.grey) s.channels = 1;
   return s;
 }
 

@@ -14,11 +14,10 @@ namespace clerestory {
 
 /// As typed; empty when not given.
 struct SolveArguments {
-  std::optional<std::string> method, accuracy;
+  std::optional<std::string> method, accuracy, channels;
   std::optional<double> max_element, target_error, time_limit;
   std::optional<std::uint64_t> seed;
   bool grey = false;
-  std::optional<int> channels;
 };
 
 struct Settings {

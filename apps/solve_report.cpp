@@ -28,8 +28,10 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
 }
 
 std::string error_line(const MeasuredError& e) {
+  const std::string where = ", measured at " + counted(e.samples, "point");
+  if (e.rms_relative < e.confidence) return "below " + percent(e.rms_relative + e.confidence) + " rms" + where;
   return percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), 95 % of points within " +
-         percent(e.p95_relative) + ", measured at " + counted(e.samples, "point");
+         percent(e.p95_relative) + where;
 }
 
 }  // namespace

@@ -78,9 +78,8 @@ void add_mesh_command(CLI::App& program, Task& task) {
   require_extension(command, "--output", ".vtp");
   add_positive_option(command, "--max-element", arguments->solve.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
-  command.add_option("--accuracy", arguments->solve.accuracy, "draft, standard or fine (default: standard)")
-      ->type_name("NAME")
-      ->check(CLI::Validator(problem_with_accuracy, ""));
+  add_checked_word(command, "--accuracy", arguments->solve.accuracy, problem_with_accuracy,
+                   "draft, standard or fine (default: standard)");
   add_common_options(command, arguments->common);
   command.footer("example: clerestory mesh data/scenes/house.json -o patches.vtp --max-element 0.25");
   command.callback([arguments, &task] {

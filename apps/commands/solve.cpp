@@ -210,15 +210,10 @@ void add_solve_command(CLI::App& program, Task& task) {
   command.add_option("-o,--output", arguments->output, "the result, for ParaView")->type_name("OUT.vtp")->required();
   require_extension(command, "--output", ".vtp");
   SolveArguments& s = arguments->solve;
-  command
-      .add_option("--method", s.method,
-                  "progressive, gauss-seidel, jacobi, or path, the unbiased reference "
-                  "(default: progressive)")
-      ->type_name("NAME")
-      ->check(CLI::Validator(problem_with_method, ""));
-  command.add_option("--accuracy", s.accuracy, "draft, standard or fine (default: standard)")
-      ->type_name("NAME")
-      ->check(CLI::Validator(problem_with_accuracy, ""));
+  add_checked_word(command, "--method", s.method, problem_with_method,
+                   "progressive, gauss-seidel, jacobi, or path, the unbiased reference (default: progressive)");
+  add_checked_word(command, "--accuracy", s.accuracy, problem_with_accuracy,
+                   "draft, standard or fine (default: standard)");
   add_positive_option(command, "--target-error", s.target_error, "SHARE",
                       "go on until the measured RMS relative error is below this, 0.02 for 2 %");
   add_positive_option(command, "--time-limit", s.time_limit, "S", "stop solving after so many seconds");
@@ -229,9 +224,7 @@ void add_solve_command(CLI::App& program, Task& task) {
       ->type_name("POINTS.csv");
   command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")
       ->type_name("OUT.csv");
-  command.add_option("--channels", s.channels, "1 = grey, 3 = colour (default: what the scene needs)")
-      ->type_name("N")
-      ->check(CLI::IsMember({1, 3}).name(""));
+  add_choice(command, "--channels", s.channels, {"1", "3"}, "1 = grey, 3 = colour (default: what the scene needs)");
   command.add_flag("--grey", s.grey, "solve in one channel, the same as --channels 1")->excludes("--channels");
   add_common_options(command, arguments->common);
   command.footer("example: clerestory solve data/scenes/office.json -o office.vtp --accuracy fine");

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# From a bare Debian 12 to a first result: installs, builds, solves a scene, says how to look at it.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+echo "== 1 of 3: what the build needs"
+bash apps/install_dependencies.sh
+
+echo "== 2 of 3: building the program"
+cmake --preset release -DCLERESTORY_BUILD_TESTS=OFF
+cmake --build --preset release
+
+echo "== 3 of 3: solving a daylit office"
+program=build/release/bin/clerestory
+"$program" solve data/scenes/office.json -o build/office.vtp --report build/office.json
+
+cat <<END
+
+The result is build/office.vtp. To look at it: open it in ParaView, press Apply, and colour by
+"illuminance" or "daylight_factor"; "Backface Representation: Cull Frontface/Backface" in the
+properties lets you look into the room from outside. The daylight factors at desk height are in
+build/office.sensors.csv, the figures of the run in build/office.json.
+
+Next:  $program solve data/scenes/house.json -o build/house.vtp
+       $program --help
+END

@@ -48,9 +48,8 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
       for (std::size_t i = begin + from; i < begin + to; ++i) {
         const Place at = place_of(i);
         if (by_paths) {
-          PathSum sum;
-          add_paths_at_point(light, at.p, at.n, stream_key(key, i), 0, paths, sum, rays[i]);
-          done(i, sum.mean(), sum.std_error());
+          const auto [E, std_error] = trace_paths_at_point(light, at.p, at.n, stream_key(key, i), paths, rays[i]);
+          done(i, E, std_error);
         } else {
           done(i, gather_point(light, solution.B, at.p, at.n, quality, stream_key(key, i), rays[i]), Spectrum(0.0));
         }

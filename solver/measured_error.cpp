@@ -21,9 +21,9 @@ struct Budget {
 
 Budget budget(Accuracy accuracy) {
   switch (accuracy) {
-    case Accuracy::draft: return {128, 256};
-    case Accuracy::standard: return {256, 1024};
-    case Accuracy::fine: return {512, 4096};
+    case Accuracy::draft: return {128, 512};
+    case Accuracy::standard: return {256, 2048};
+    case Accuracy::fine: return {512, 8192};
   }
   return {};
 }
@@ -76,11 +76,10 @@ MeasuredError compare(const Problem& problem, std::vector<Sample>& samples, cons
     parallel_for(std::min(kBlock, samples.size() - begin), 1, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = begin + from; i < begin + to; ++i) {
         const auto [p, n] = place(i);
-        PathSum sum;
         unsigned long long rays = 0;
-        add_paths_at_point(light, p, n, stream_key(key, i), 0, paths, sum, rays);
-        samples[i].r = luminous_mean(sum.mean());
-        samples[i].std_error = luminous_mean(sum.std_error());
+        const auto [E, std_error] = trace_paths_at_point(light, p, n, stream_key(key, i), paths, rays);
+        samples[i].r = luminous_mean(E);
+        samples[i].std_error = luminous_mean(std_error);
         reached[i] = 1;
       }
     });

@@ -63,13 +63,22 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const std::array<
   }
 }
 
-void add_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int first, int count,
-                        PathSum& result, unsigned long long& rays) {
-  for (int k = first; k < first + count; ++k) {
-    const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-    RandomStream random(key, static_cast<std::uint64_t>(k), 1);
-    result.add(trace_path(light, p, n, {u[0], u[1]}, random, rays));
+PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
+                                  unsigned long long& rays) {
+  constexpr int kReplicates = 8;
+  const int in_each = (paths + kReplicates - 1) / kReplicates;
+  PathSum replicates;
+  for (int r = 0; r < kReplicates; ++r) {
+    const std::uint64_t replicate = stream_key(key, static_cast<std::uint64_t>(r));
+    Spectrum sum(0.0);
+    for (int k = 0; k < in_each; ++k) {
+      const auto u = sobol4(static_cast<std::uint32_t>(k), replicate);
+      RandomStream random(replicate, static_cast<std::uint64_t>(k));
+      sum += trace_path(light, p, n, {u[0], u[1]}, random, rays);
+    }
+    replicates.add(sum / in_each);
   }
+  return {replicates.mean(), replicates.std_error()};
 }
 
 }  // namespace clerestory

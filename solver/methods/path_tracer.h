@@ -31,8 +31,12 @@ struct PathSum {
 Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const std::array<double, 2>& u, RandomStream& random,
                     unsigned long long& rays);
 
-/// Adds paths first .. first + count - 1 of the stream `key` from the fixed point p.
-void add_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int first, int count,
-                        PathSum& result, unsigned long long& rays);
+/// Irradiance at the fixed point p and its standard error, from independent replicates of stratified paths: the spread
+/// between replicates counts what stratification gains, which the spread of single paths does not.
+struct PathEstimate {
+  Spectrum E, std_error;
+};
+PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
+                                  unsigned long long& rays);
 
 }  // namespace clerestory

@@ -17,7 +17,6 @@ struct Use {
 struct GroupResult {
   std::vector<Use> uses;
   std::vector<Point2> crossings;  ///< where CGAL found lines crossing after all; ids from kCrossing on
-  std::size_t overlapping = 0;
 };
 constexpr std::uint32_t kCrossing = 0x80000000;
 
@@ -34,7 +33,7 @@ GroupResult see(const FaceComplex& complex, const PlaneGroup& group, std::uint32
   Cdt cdt;
   draw(cdt, group.plane, complex.vertices, ends, {});
   const Covering covering(complex, group, materials);
-  result.overlapping = mark_sheets(cdt, covering).overlapping;
+  mark_sheets(cdt, covering);
   for (const auto v : cdt.finite_vertex_handles())
     if (v->info().id == kNoVertex) {
       v->info().id = kCrossing + static_cast<std::uint32_t>(result.crossings.size());
@@ -171,7 +170,6 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
                       std::span(drawing.lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]));
     });
     uses.clear();
-    report.overlapping_regions = 0;
     bool crossed = false;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto base = static_cast<std::uint32_t>(complex.vertices.size());
@@ -183,7 +181,6 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
         if (u.a > u.b) std::swap(u.a, u.b);
         uses.push_back(u);
       }
-      report.overlapping_regions += seen[g].overlapping;
     }
     if (!crossed) break;
     drawing.lines.clear();

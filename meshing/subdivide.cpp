@@ -34,6 +34,7 @@ class RegionMesh {
     Cells cells = mark_sheets(cdt_, Covering(complex, group, materials));
     sheets_ = std::move(cells.sheets);
     cells_ = cells.count;
+    overlapping_ = cells.overlapping;
   }
 
   /// Inserts vertices until no triangle is bad but those that wait for the lines it returns, sorted, to be halved.
@@ -76,6 +77,7 @@ class RegionMesh {
   }
 
   std::size_t cell_count() const { return cells_; }
+  std::size_t overlapping_count() const { return overlapping_; }
   void collect(std::uint32_t first_inner, std::vector<Vec3>& vertices, std::vector<MeshTriangle>& triangles) const {
     for (const Point2& p : inner_) vertices.push_back(plane_.lift(p));
     for (const auto f : cdt_.finite_face_handles()) {
@@ -240,7 +242,7 @@ class RegionMesh {
   Cdt cdt_;
   std::unordered_map<std::uint32_t, Vertex> handle_;
   std::vector<Sheet> sheets_;
-  std::size_t cells_ = 0;
+  std::size_t cells_ = 0, overlapping_ = 0;
   std::vector<Point2> inner_;
   std::priority_queue<Bad> bad_;
   std::vector<Ends> asked_;
@@ -346,6 +348,7 @@ std::vector<MeshTriangle> subdivide(FaceComplex& complex, const std::vector<Plan
   for (const auto& mesh : meshes) {
     mesh->collect(static_cast<std::uint32_t>(complex.vertices.size()), complex.vertices, triangles);
     report.planar_regions += mesh->cell_count();
+    report.overlapping_regions += mesh->overlapping_count();
   }
   return triangles;
 }

@@ -53,16 +53,15 @@ bool is_made_up(const std::string& name) {
 double colour_part(float x) { return std::isfinite(x) && x > 0 ? std::min(double{x}, kLargestCoordinate) : 0.0; }
 Spectrum to_spectrum(const aiColor3D& c) { return {colour_part(c.r), colour_part(c.g), colour_part(c.b)}; }
 
-ModelMaterial to_material(const aiMaterial& from, bool format_has_materials) {
+ModelMaterial to_material(const aiMaterial& from) {
   ModelMaterial to;
   aiString name;
   from.Get(AI_MATKEY_NAME, name);
   to.material.name = str(name);
-  if (to.material.name.empty() || !format_has_materials) to.material.name = kDefaultMaterial;
+  if (to.material.name.empty()) to.material.name = kDefaultMaterial;
   aiColor3D colour;
-  // '<IFCDefault>' stands for what has no style; its grey is Assimp's, not the model's.
-  to.described = format_has_materials && to.material.name != "<IFCDefault>" &&
-                 from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS;
+  // "<IFCDefault>" stands for what has no style; its grey is Assimp's, not the model's.
+  to.described = to.material.name != "<IFCDefault>" && from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS;
   if (!to.described) return to;
   to.material.reflectance = to_spectrum(colour);
   if (from.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS) {
@@ -122,11 +121,10 @@ void set_frame(Model& model, const aiScene& scene, const std::string& extension)
 
 Model to_model(const aiScene& scene, const std::filesystem::path& file, const std::string& extension) {
   const std::string name = short_name(file);
-  const bool format_has_materials = extension == ".ifc" || extension == ".dae" || extension == ".fbx";
   Model model;
   set_frame(model, scene, extension);
   for (unsigned m = 0; m < scene.mNumMaterials; ++m) {
-    model.materials.push_back(to_material(*scene.mMaterials[m], format_has_materials));
+    model.materials.push_back(to_material(*scene.mMaterials[m]));
   }
   const MaterialId no_material(model.materials.size());
   ModelMaterial& none = model.materials.emplace_back();

@@ -44,6 +44,9 @@ Model read_model(const std::filesystem::path& file);
 
 Model read_obj(const std::filesystem::path& file);
 Model read_gltf(const std::filesystem::path& file);  ///< .gltf and .glb
+Model read_ply(const std::filesystem::path& file);
+Model read_stl(const std::filesystem::path& file);
+Model read_off(const std::filesystem::path& file);
 
 /// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`.
 std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings);

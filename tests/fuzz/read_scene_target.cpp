@@ -1,0 +1,62 @@
+// Any bytes as a scene or model: read, or refused with a message; never anything else.
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "fuzz_input.h"
+
+#include "io/read_scene.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "fuzz_%s: read a scene in which %s\n", FUZZ_NAME, what);
+  std::abort();
+}
+
+void check(const Scene& scene) {
+  const PolygonSoup& soup = scene.polygons;
+  require(soup.face_count() > 0, "there is no face");
+  require(soup.face_begin.size() == soup.face_count() + 1 && soup.surface.size() == soup.face_count() &&
+              soup.face_begin.back() == soup.corner.size(),
+          "the arrays of the faces do not fit together");
+  for (const std::uint32_t c : soup.corner) require(c < soup.vertices.size(), "a corner has no vertex");
+  for (const MaterialId m : soup.material) require(m < scene.materials.size(), "a face has no material");
+  for (const SurfaceId s : soup.surface) require(s < scene.surfaces.size(), "a face has no surface");
+  for (const Vec3& p : soup.vertices) require(is_finite(p), "a vertex is not finite");
+  for (const Material& m : scene.materials) {
+    require(m.reflectance.min() >= 0 && m.reflectance.max() < 1, "a reflectance is outside [0, 1)");
+    require(m.transmittance.min() >= 0 && m.transmittance.max() <= 1, "a transmittance is outside [0, 1]");
+    require(m.exitance.min() >= 0 && std::isfinite(m.exitance.max()), "an exitance is negative or infinite");
+  }
+}
+
+/// What scene files of the corpus name.
+void write_neighbours() {
+  std::ofstream(fuzz_folder() / "room.obj") << "o floor\nusemtl floor\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  std::ofstream(fuzz_folder() / "points.csv") << "x,y,z,nx,ny,nz\n0.5,0.5,0.8,0,0,1\n";
+}
+
+}  // namespace
+}  // namespace clerestory
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace clerestory;
+  static const bool ready = (write_neighbours(), true);
+  static_cast<void>(ready);
+  try {
+    check(read_scene(write_fuzz_input(data, size)));
+    ++fuzz_tally.read;
+  } catch (const InputError& error) {
+    ++fuzz_tally.refused;
+    const std::string message = error.what();
+    require(message.size() > 10 && message.find('\n') == message.npos, "the message is empty or has several lines");
+    if (message.find("the file is damaged or not") != message.npos) ++fuzz_tally.broke_down;
+  }
+  return 0;  // any other exception ends the program
+}

@@ -1,0 +1,147 @@
+#include "meshing/make_lightmap.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/meshing/mesh_checks.h"
+
+namespace clerestory {
+namespace {
+
+using namespace testing;
+
+PatchSet mesh(SceneMaker& maker, double max_element) {
+  MeshOptions options;
+  options.max_element = max_element;
+  return build_patches(maker.scene(), options).patches;
+}
+/// Points at one place.
+std::size_t points_at(const VertexLightmap& map, const Vec3& x) {
+  std::size_t count = 0;
+  for (const Vec3& p : map.position) count += length(p - x) < 1e-9;
+  return count;
+}
+
+TEST(MakeLightmap, ASphereIsSmoothOnBothSides) {
+  SceneMaker maker;
+  const int n = 36;
+  const auto at = [&](int i, int j) {
+    const double theta = std::numbers::pi * j / 18, phi = 2 * std::numbers::pi * (i % n) / n;
+    return Vec3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < 18; ++j) {
+      if (j > 0) maker.polygon({at(i, j), at(i, j + 1), at(i + 1, j)});
+      if (j < 17) maker.polygon({at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});
+    }
+  const PatchSet p = mesh(maker, 1);
+  const VertexLightmap map = make_lightmap(p);
+  EXPECT_EQ(map.position.size(), 2 * p.vertices.size());
+  // Normals follow the sphere; facets of 10 degrees and their uneven fans leave a few degrees.
+  for (std::size_t i = 0; i < map.position.size(); ++i)
+    EXPECT_GT(std::abs(dot(map.normal[i], normalized(map.position[i]))), std::cos(0.1));
+}
+
+TEST(MakeLightmap, ABoxIsPartedAtItsEdges) {
+  SceneMaker maker;
+  maker.box({0, 0, 0}, {2, 2, 2});
+  const PatchSet p = mesh(maker, 0.6);
+  const VertexLightmap map = make_lightmap(p);
+  EXPECT_EQ(points_at(map, {1, 1, 1}), 6u);  // three faces, two sides
+  // Coplanar neighbours share: within a face and a side there is one point for each vertex.
+  std::set<std::array<double, 4>> places;
+  for (std::size_t i = 0; i < map.position.size(); ++i) {
+    const Vec3 n = map.normal[i], x = map.position[i];
+    EXPECT_NEAR(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}), 1, 1e-9);
+    const double face = std::round(n.x) + 10 * std::round(n.y) + 100 * std::round(n.z);
+    EXPECT_TRUE(places.insert({face, x.x, x.y, x.z}).second);
+  }
+}
+
+TEST(MakeLightmap, CornersRunCounterClockwiseFromTheLitSide) {
+  SceneMaker maker;
+  maker.box({0, 0, 0}, {2, 1, 1});
+  const PatchSet p = mesh(maker, 0.6);
+  const VertexLightmap map = make_lightmap(p);
+  for (std::size_t i = 0; i < p.patch_count(); ++i) {
+    const auto expected = p.corner_positions(PatchId{i});
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(map.position[map.corners[i][k]], expected[k]);
+    const Vec3 n = cross(expected[1] - expected[0], expected[2] - expected[0]);
+    EXPECT_GT(dot(n, p.normal[i]), 0);
+  }
+}
+
+TEST(MakeLightmap, APartitionPartsTheFloorItStandsOnButNotTheOneBelow) {
+  SceneMaker maker;
+  maker.polygon({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+  maker.polygon({{0, -1, 0}, {0, 0.5, 0}, {0, 0.5, 1}, {0, -1, 1}});
+  const PatchSet p = mesh(maker, 0.3);
+  const VertexLightmap map = make_lightmap(p);
+  std::size_t on_the_line = 0;
+  for (const Vec3& v : p.vertices) {
+    const Vec3 x = v + p.origin;
+    if (std::abs(x.x) > 1e-9 || std::abs(x.z) > 1e-9) continue;
+    ++on_the_line;
+    if (x.y < 0.5 - 1e-9) EXPECT_EQ(points_at(map, v), 5u) << x.y;  // floor left and right, partition two, below one
+    // At its end the floor goes on around the partition.
+    else if (x.y < 0.5 + 1e-9)
+      EXPECT_EQ(points_at(map, v), 4u);
+    else
+      EXPECT_EQ(points_at(map, v), 2u);
+  }
+  EXPECT_GT(on_the_line, 5u);
+}
+
+TEST(MakeLightmap, MaterialsAndRimsPart) {
+  SceneMaker maker;
+  const MaterialId other = maker.material("other");
+  maker.polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  maker.polygon({{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}}, other);
+  const PatchSet p = mesh(maker, 0.4);
+  const VertexLightmap map = make_lightmap(p);
+  for (const Vec3& v : p.vertices)
+    EXPECT_EQ(points_at(map, v), std::abs(v.x + p.origin.x - 1) < 1e-9 ? 4u : 2u);  // front and back never share
+}
+
+TEST(MakeLightmap, MixedWindingDoesNotPartASurface) {
+  SceneMaker maker;
+  maker.polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  maker.polygon({{1, 0, 0}, {1, 1, 0}, {2, 1, 0.1}, {2, 0, 0.1}});  // the other way round, 6 degrees
+  const PatchSet p = mesh(maker, 0.4);
+  const VertexLightmap map = make_lightmap(p);
+  EXPECT_EQ(map.position.size(), 2 * p.vertices.size());
+}
+
+TEST(MakeLightmap, SamplesStartALittleInsideOfTheSurface) {
+  SceneMaker maker;
+  maker.box({0, 0, 0}, {2, 2, 2});
+  const PatchSet p = mesh(maker, 0.5);
+  const VertexLightmap map = make_lightmap(p);
+  for (std::size_t i = 0; i < map.position.size(); ++i) {
+    const Vec3 d = map.sample_position[i] - map.position[i];
+    EXPECT_LT(length(d), 1e-3);                    // of elements of 0.5 m
+    EXPECT_NEAR(dot(d, map.normal[i]), 0, 1e-12);  // stays on the face
+    const Vec3 s = map.sample_position[i];
+    // Inside of its own face, never on one of the box's edges.
+    const int on_faces = (std::abs(std::abs(s.x) - 1) < 1e-9) + (std::abs(std::abs(s.y) - 1) < 1e-9) +
+                         (std::abs(std::abs(s.z) - 1) < 1e-9);
+    EXPECT_EQ(on_faces, 1);
+  }
+}
+
+TEST(MakeLightmap, AveragesByArea) {
+  SceneMaker maker;
+  maker.box({0, 0, 0}, {2, 2, 2});
+  const PatchSet p = mesh(maker, 0.5);
+  VertexLightmap map = make_lightmap(p);
+  Field E(p.patch_count(), 1);
+  for (std::size_t i = 0; i < p.patch_count(); ++i) E.at(i, 0) = 3;
+  average_to_points(p, E, map);
+  for (const double e : map.E.value) EXPECT_NEAR(e, 3, 1e-12);
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -24,9 +24,13 @@ constexpr std::size_t kTile = 32;
 /// Relative error of an unblocked row sum: quadrature of far pairs, mostly far below.
 constexpr double kQuadratureError = 3e-4;
 constexpr int kClosureRays = 128;
-/// Standard error of one factor above which its visibility is sampled again by more rays: a row with a dozen near, half
-/// blocked pairs then still sums to 1 within a few 1e-4.
-constexpr double kPairError = 7e-5;
+/// Standard error of one factor above which its visibility is sampled again by more rays.
+constexpr double kPairError = 5e-5;
+/// Standard error of a row's sum above which all its doubtful pairs are sampled again, by kSecondSamples rays. Patches
+/// in a narrow gap need it, which have hundreds of half hidden partners. The true error is about half of this estimate,
+/// which takes stratified samples for independent ones.
+constexpr double kRowError = 4e-4;
+constexpr int kSecondSamples = 256;
 constexpr int kMostSamples = 32'768;
 
 /// Patches of a compact cluster stand together in `order`, so that a tile of pairs shares one shaft.
@@ -76,6 +80,7 @@ struct Builder {
   FormFactorMatrix& F;
   std::vector<float> row_variance;  ///< of row i from tile J: [i * tiles + J]
   std::size_t tiles = 0;
+  std::vector<std::uint8_t> poor;  ///< rows to be sampled again
   std::atomic<std::size_t> unblocked{0}, sampled{0};
   std::atomic<unsigned long long> ray_count{0};
 
@@ -94,16 +99,20 @@ struct Builder {
       tile_box.push_back(box);
     }
     row_variance.assign(n * tiles, 0);
+    poor.assign(n, 0);
   }
 
   std::span<const std::uint32_t> tile(std::size_t t) const {
     return std::span(order).subspan(t * kTile, std::min(kTile, order.size() - t * kTile));
   }
 
-  /// All pairs of one patch in tile I and one in tile J.
-  void tile_pair(std::size_t I, std::size_t J) {
+  /// All pairs of one patch in tile I and one in tile J. The second time: only those of a row that needs it.
+  void tile_pair(std::size_t I, std::size_t J, bool second) {
+    if (second && !holds_poor_row(I) && !holds_poor_row(J)) return;
     std::vector<const Blocker*> in_shaft;
+    std::vector<const Screen*> screens;
     blockers.in_shaft(tile_box[I], tile_box[J], in_shaft);
+    if (!in_shaft.empty()) blockers.screens_in_shaft(tile_box[I], tile_box[J], screens);
     std::array<double, kTile> variance_i{}, variance_j{};
     std::size_t unblocked_here = 0, sampled_here = 0;
     unsigned long long rays_here = 0;
@@ -114,17 +123,24 @@ struct Builder {
       for (std::size_t b = I == J ? a + 1 : 0; b < tile_j.size(); ++b) {
         const std::uint32_t j = tile_j[b];
         const QuadratureTriangle& q = triangles[j];
+        if (second && !poor[i] && !poor[j]) continue;
         if (!rises_over(p, q) || !rises_over(q, p)) continue;
+        if (std::ranges::any_of(screens,
+                                [&](const Screen* s) { return s->hides(p.corner, q.corner, blockers.touching()); }))
+          continue;
         SampledVisibility visibility;
         const bool needs_rays = may_be_blocked(p, q, in_shaft);
         // The stream belongs to the pair, whichever way round the tiles list it.
         const std::uint64_t key = stream_key(seed, std::min(i, j), std::max(i, j));
         const SampledTriangle sampled_p{p.corner, p.normal}, sampled_q{q.corner, q.normal};
-        if (needs_rays) {
-          visibility = sample_visibility_quick(sampled_p, sampled_q, rays, key);
-          rays_here += static_cast<unsigned long long>(visibility.rays);
-        }
         (needs_rays ? sampled_here : unblocked_here) += 1;
+        if (needs_rays) {
+          visibility = second ? sample_visibility(sampled_p, sampled_q, rays, mix_bits(key + 1), kSecondSamples)
+                              : sample_visibility_quick(sampled_p, sampled_q, rays, key);
+          rays_here += static_cast<unsigned long long>(visibility.rays);
+        } else if (second) {
+          continue;
+        }
         const double exchange = triangle_exchange(p, q);
         const double F_ij = exchange / p.area, F_ji = exchange / q.area;
         if (const int samples = samples_wanted(std::max(F_ij, F_ji) * visibility.std_error)) {
@@ -134,17 +150,58 @@ struct Builder {
         if (visibility.value == 0 && visibility.std_error == 0) continue;
         F.value[i * F.n + j] = static_cast<float>(std::min(1.0, F_ij * visibility.value));
         F.value[j * F.n + i] = static_cast<float>(std::min(1.0, F_ji * visibility.value));
-        const double variance = visibility.std_error * visibility.std_error;
+        // Pairs whose samples all agree are off by little and either way: their bound would drown the measured spread.
+        const bool resolved = visibility.value > 0 && visibility.value < 1;
+        const double variance = resolved ? visibility.std_error * visibility.std_error : 0;
         variance_i[a] += F_ij * F_ij * variance;
         variance_j[b] += F_ji * F_ji * variance;
       }
     }
-    for (std::size_t a = 0; a < tile_i.size(); ++a)
-      row_variance[tile_i[a] * tiles + J] = static_cast<float>(variance_i[a] + (I == J ? variance_j[a] : 0));
+    const auto keep = [&](std::uint32_t i, std::size_t T, double variance) {
+      if (!second || poor[i]) row_variance[i * tiles + T] = static_cast<float>(variance);
+    };
+    for (std::size_t a = 0; a < tile_i.size(); ++a) keep(tile_i[a], J, variance_i[a] + (I == J ? variance_j[a] : 0));
     if (I != J)
-      for (std::size_t b = 0; b < tile_j.size(); ++b)
-        row_variance[tile_j[b] * tiles + I] = static_cast<float>(variance_j[b]);
-    unblocked += unblocked_here, sampled += sampled_here, ray_count += rays_here;
+      for (std::size_t b = 0; b < tile_j.size(); ++b) keep(tile_j[b], I, variance_j[b]);
+    ray_count += rays_here;
+    if (!second) unblocked += unblocked_here, sampled += sampled_here;
+  }
+
+  bool holds_poor_row(std::size_t t) const {
+    return std::ranges::any_of(tile(t), [&](std::uint32_t i) { return poor[i] != 0; });
+  }
+
+  double row_std_error(std::size_t i) const {
+    double variance = 0;
+    for (std::size_t t = 0; t < tiles; ++t) variance += double{row_variance[i * tiles + t]};
+    return std::sqrt(variance);
+  }
+
+  /// Takes the tile pairs in parallel; false when the monitor stopped it.
+  bool pass(bool second, const Monitor& monitor) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> work;
+    work.reserve(tiles * (tiles + 1) / 2);
+    for (std::size_t I = 0; I < tiles; ++I)
+      for (std::size_t J = I; J < tiles; ++J)
+        work.emplace_back(static_cast<std::uint32_t>(I), static_cast<std::uint32_t>(J));
+    // In slices, so that progress and the wish to stop are seen between them.
+    const std::size_t slice = std::max<std::size_t>(64, work.size() / 100);
+    for (std::size_t done = 0; done < work.size(); done += slice) {
+      if (monitor.should_stop()) return false;
+      const double share = static_cast<double>(done) / static_cast<double>(work.size());
+      monitor.report("form factors", second ? 0.85 + 0.15 * share : 0.85 * share);
+      parallel_for(std::min(slice, work.size() - done), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = done + begin; k < done + end; ++k) tile_pair(work[k].first, work[k].second, second);
+      });
+    }
+    return true;
+  }
+
+  /// Fills the matrix; false when the monitor stopped it.
+  bool fill(const Monitor& monitor) {
+    if (!pass(false, monitor)) return false;
+    for (std::size_t i = 0; i < F.n; ++i) poor[i] = row_std_error(i) > kRowError;
+    return pass(true, monitor);
   }
 
   /// Samples that bring a factor from this standard error, found with about 64, down to kPairError; 0: it is below.
@@ -251,30 +308,9 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
 
   {
     Builder builder(patches, rays, options.seed, F);
-    const std::size_t tiles = builder.tiles, pairs = tiles * (tiles + 1) / 2;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> work;
-    work.reserve(pairs);
-    for (std::size_t I = 0; I < tiles; ++I)
-      for (std::size_t J = I; J < tiles; ++J)
-        work.emplace_back(static_cast<std::uint32_t>(I), static_cast<std::uint32_t>(J));
-    // In slices, so that progress and the wish to stop are seen between them.
-    const std::size_t slice = std::max<std::size_t>(64, pairs / 100);
-    for (std::size_t done = 0; done < pairs; done += slice) {
-      if (monitor.should_stop()) {
-        F.complete = false;
-        break;
-      }
-      monitor.report("form factors", static_cast<double>(done) / static_cast<double>(pairs));
-      parallel_for(std::min(slice, pairs - done), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = done + begin; k < done + end; ++k) builder.tile_pair(work[k].first, work[k].second);
-      });
-    }
+    F.complete = builder.fill(monitor);
     F.pairs_unblocked = builder.unblocked, F.pairs_sampled = builder.sampled, F.rays = builder.ray_count;
-    for (std::size_t i = 0; i < n; ++i) {
-      double variance = 0;
-      for (std::size_t t = 0; t < tiles; ++t) variance += double{builder.row_variance[i * tiles + t]};
-      F.row_error[i] = std::sqrt(variance) + kQuadratureError;
-    }
+    for (std::size_t i = 0; i < n; ++i) F.row_error[i] = builder.row_std_error(i) + kQuadratureError;
   }
   F.raw_row_sum = row_sums(F);
   F.row_sum = F.raw_row_sum;

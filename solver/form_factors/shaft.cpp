@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "solver/form_factors/polygon.h"
 #include "solver/model/parallel.h"
+#include "solver/spaces.h"
 
 namespace clerestory {
 namespace {
@@ -69,6 +72,30 @@ struct BoxShaft {
   }
 };
 
+std::array<Vec3, 3> corners_of(const PatchSet& patches, std::size_t t) {
+  const auto& c = patches.corners[t];
+  return {patches.vertices[c[0]], patches.vertices[c[1]], patches.vertices[c[2]]};
+}
+
+/// Corners of the convex hull of points in the plane of frame.t and frame.b, counter-clockwise around frame.n. Source:
+/// Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979.
+std::vector<Vec3> convex_hull(std::vector<Vec3> points, const Frame& frame) {
+  const auto x = [&](const Vec3& p) { return dot(frame.t, p); };
+  const auto y = [&](const Vec3& p) { return dot(frame.b, p); };
+  std::ranges::sort(points, [&](const Vec3& a, const Vec3& b) { return x(a) != x(b) ? x(a) < x(b) : y(a) < y(b); });
+  std::vector<Vec3> hull;
+  const auto add = [&](const Vec3& p, std::size_t floor) {
+    while (hull.size() >= floor + 2 && dot(frame.n, cross(hull.back() - hull[hull.size() - 2], p - hull.back())) <= 0)
+      hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const Vec3& p : points) add(p, 0);
+  const std::size_t lower = hull.size() - 1;
+  for (auto p = points.rbegin(); p != points.rend(); ++p) add(*p, lower);
+  hull.pop_back();
+  return hull;
+}
+
 }  // namespace
 
 Box Box::around(std::span<const Vec3> points) {
@@ -114,6 +141,92 @@ Blockers::Blockers(const PatchSet& patches) {
   }
   nodes_.reserve(2 * triangles_.size());
   if (!triangles_.empty()) build(0, triangles_.size());
+  find_screens(patches, blocks);
+}
+
+void Blockers::find_screens(const PatchSet& patches, const std::vector<std::uint8_t>& blocks) {
+  // Opaque blockers that share an edge and a plane belong together.
+  struct SharedEdge {
+    Vec3 low, high;
+    std::size_t triangle;
+  };
+  const auto before = [](const Vec3& a, const Vec3& b) {
+    return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
+  };
+  std::vector<SharedEdge> sides;
+  std::vector<Vec3> normal(patches.triangle_count());
+  for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
+    if (!blocks[t] || patches.is_glass(TriangleId{t})) continue;
+    const auto corner = corners_of(patches, t);
+    normal[t] = normalized(area_vector(corner));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = corner[k], &b = corner[(k + 1) % 3];
+      sides.push_back(before(a, b) ? SharedEdge{a, b, t} : SharedEdge{b, a, t});
+    }
+  }
+  std::ranges::sort(sides, [&](const SharedEdge& a, const SharedEdge& b) {
+    if (a.low != b.low) return before(a.low, b.low);
+    if (a.high != b.high) return before(a.high, b.high);
+    return a.triangle < b.triangle;
+  });
+  Spaces joined(patches.triangle_count());
+  for (std::size_t k = 1; k < sides.size(); ++k) {
+    const SharedEdge &a = sides[k - 1], &b = sides[k];
+    if (a.low == b.low && a.high == b.high && length(cross(normal[a.triangle], normal[b.triangle])) < 1e-9)
+      joined.join(a.triangle, b.triangle);
+  }
+  std::map<std::size_t, std::vector<std::size_t>> groups;
+  for (std::size_t t = 0; t < patches.triangle_count(); ++t)
+    if (blocks[t] && !patches.is_glass(TriangleId{t})) groups[joined.find(t)].push_back(t);
+  for (const auto& [first, members] : groups) {
+    const Frame frame(normal[first]);
+    const double offset = dot(frame.n, patches.vertices[patches.corners[first][0]]);
+    std::vector<Vec3> points;
+    double area = 0;
+    bool flat = true;
+    for (const std::size_t t : members) {
+      const auto corner = corners_of(patches, t);
+      area += length(area_vector(corner));
+      for (const Vec3& x : corner) {
+        flat &= std::abs(dot(frame.n, x) - offset) <= touching_;
+        points.push_back(x);
+      }
+    }
+    const std::vector<Vec3> hull = convex_hull(points, frame);
+    // Convex, and nowhere covered twice, when the triangles fill their hull.
+    if (!flat || hull.size() < 3 || std::abs(length(area_vector(hull)) - area) > 1e-9 * area) continue;
+    Screen screen;
+    screen.normal = frame.n, screen.offset = offset, screen.box = Box::around(hull);
+    for (std::size_t k = 0; k < hull.size(); ++k) {
+      const Vec3 inward = cross(frame.n, normalized(hull[(k + 1) % hull.size()] - hull[k]));
+      screen.edges.push_back({inward, dot(inward, hull[k])});
+    }
+    screens_.push_back(std::move(screen));
+  }
+}
+
+void Blockers::screens_in_shaft(const Box& a, const Box& b, std::vector<const Screen*>& found) const {
+  found.clear();
+  const BoxShaft shaft(a, b);
+  for (const Screen& screen : screens_)
+    if (shaft.reaches(screen.box, touching_)) found.push_back(&screen);
+}
+
+bool Screen::hides(std::span<const Vec3, 3> p, std::span<const Vec3, 3> q, double touching) const {
+  std::array<double, 3> over_p, over_q;
+  for (std::size_t k = 0; k < 3; ++k) over_p[k] = dot(normal, p[k]) - offset, over_q[k] = dot(normal, q[k]) - offset;
+  const auto all = [&](const std::array<double, 3>& heights, double side) {
+    return heights[0] * side > touching && heights[1] * side > touching && heights[2] * side > touching;
+  };
+  if (!(all(over_p, 1) && all(over_q, -1)) && !(all(over_p, -1) && all(over_q, 1))) return false;
+  // The crossings of all segments lie in the hull of the crossings of the nine between corners.
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Vec3 x = p[i] + (q[j] - p[i]) * (over_p[i] / (over_p[i] - over_q[j]));
+      for (const Edge& edge : edges)
+        if (dot(edge.inward, x) - edge.offset <= touching) return false;
+    }
+  return true;
 }
 
 std::uint32_t Blockers::build(std::size_t begin, std::size_t end) {

@@ -26,6 +26,21 @@ struct Blocker {
   double offset = 0;  ///< of its plane, dot(normal, x) = offset
 };
 
+/// A convex polygon of opaque triangles in one plane: the side of a box, a wall without a door.
+struct Screen {
+  Vec3 normal;  ///< unit
+  double offset = 0;
+  struct Edge {
+    Vec3 inward;  ///< unit, in the plane
+    double offset = 0;
+  };
+  std::vector<Edge> edges;
+  Box box;
+
+  /// True when every segment between the triangles crosses the inside of the polygon: it hides one from the other.
+  bool hides(std::span<const Vec3, 3> p, std::span<const Vec3, 3> q, double touching) const;
+};
+
 /// The triangles of a PatchSet that can stand between anything, in a tree of boxes.
 ///
 /// A triangle that has the whole scene on one side of its plane blocks nothing: the walls of a convex room are left
@@ -41,6 +56,8 @@ class Blockers {
   /// Triangles whose boxes reach into the convex hull of a and b, into `found` (cleared first).
   /// Source: Haines & Wallace, "Shaft culling for efficient ray-traced radiosity", 1991.
   void in_shaft(const Box& a, const Box& b, std::vector<const Blocker*>& found) const;
+  /// Screens that reach into the convex hull of a and b. What they hide needs no rays either.
+  void screens_in_shaft(const Box& a, const Box& b, std::vector<const Screen*>& found) const;
 
  private:
   struct Node {
@@ -49,9 +66,11 @@ class Blockers {
     std::uint32_t blocker = 0;  ///< a leaf's
   };
   std::uint32_t build(std::size_t begin, std::size_t end);
+  void find_screens(const PatchSet& patches, const std::vector<std::uint8_t>& blocks);
 
   std::vector<Node> nodes_;
   std::vector<Blocker> triangles_;
+  std::vector<Screen> screens_;
   double touching_ = 0;
 };
 

@@ -25,12 +25,12 @@ constexpr std::size_t kTile = 32;
 constexpr double kQuadratureError = 3e-4;
 constexpr int kClosureRays = 128;
 /// Standard error of one factor above which its visibility is sampled again by more rays.
-constexpr double kPairError = 5e-5;
+constexpr double kPairError = 2e-5;
 /// Standard error of a row's sum above which all its doubtful pairs are sampled again, by kSecondSamples rays. Patches
 /// in a narrow gap need it, which have hundreds of half hidden partners. The true error is about half of this estimate,
 /// which takes stratified samples for independent ones.
-constexpr double kRowError = 4e-4;
-constexpr int kSecondSamples = 256;
+constexpr double kRowError = 2.5e-4;
+constexpr int kSecondSamples = 512;
 constexpr int kMostSamples = 32'768;
 
 /// Patches of a compact cluster stand together in `order`, so that a tile of pairs shares one shaft.
@@ -226,26 +226,64 @@ double row_product(std::span<const float> row, std::span<const double> x) {
   return sum;
 }
 
-/// Scales F_ij <- d_i F_ij d_j until closed rows sum to 1. Taking the square root of what a row is off by is half a
-/// step for the row and half for what its partners do at the same time: errors alike in all rows vanish at once, unlike
-/// ones halve with every round.
-void close_rows(FormFactorMatrix& F) {
-  constexpr int kRounds = 30;
-  constexpr double kEnough = 1e-7;  // rounding to float leaves that much
-  std::vector<double> d(F.n, 1.0), sum(F.n, 1.0);
-  for (int round = 0; round < kRounds; ++round) {
+/// y = (D_s + D F D) x over closed rows, where D F D is the scaled matrix and D_s its row sums.
+struct ScaledMatrix {
+  const FormFactorMatrix& F;
+  std::vector<double> d, sum;
+
+  void apply(const std::vector<double>& x, std::vector<double>& y) const {
+    std::vector<double> dx(F.n);
+    for (std::size_t j = 0; j < F.n; ++j) dx[j] = F.closed[j] ? d[j] * x[j] : 0;
     parallel_for(F.n, 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        if (F.closed[i]) sum[i] = d[i] * row_product(F.row(i), d);
+        y[i] = F.closed[i] ? sum[i] * x[i] + d[i] * row_product(F.row(i), dx) : 0;
     });
+  }
+  void update_sums() {
+    parallel_for(F.n, 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) sum[i] = d[i] * row_product(F.row(i), d);
+    });
+  }
+};
+
+/// Scales F_ij <- d_i F_ij d_j until closed rows sum to 1: Newton's method for d. Its equation (D_s + D F D) e = sum -
+/// 1, d <- d (1 - e), is symmetric in the inner product weighted by area and its eigenvalues lie in 0..2, so that a few
+/// conjugate gradient steps solve it; plain Sinkhorn rounds stall where two patches see little but each other.
+void close_rows(FormFactorMatrix& F, const std::vector<double>& area) {
+  constexpr int kNewtonSteps = 4, kGradientSteps = 25;
+  constexpr double kEnough = 1e-7;  // rounding to float leaves that much
+  ScaledMatrix G{F, std::vector<double>(F.n, 1.0), std::vector<double>(F.n, 1.0)};
+  const auto inner = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    double product = 0;
+    for (std::size_t i = 0; i < F.n; ++i) product += area[i] * a[i] * b[i];
+    return product;
+  };
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    G.update_sums();
+    std::vector<double> residual(F.n, 0.0), e(F.n, 0.0), image(F.n, 0.0);
     double worst = 0;
     for (std::size_t i = 0; i < F.n; ++i) {
-      if (!F.closed[i] || sum[i] <= 0) continue;
-      worst = std::max(worst, std::abs(sum[i] - 1));
-      d[i] /= std::sqrt(sum[i]);
+      if (F.closed[i]) residual[i] = G.sum[i] - 1;
+      worst = std::max(worst, std::abs(residual[i]));
     }
     if (worst < kEnough) break;
+    std::vector<double> direction = residual;
+    double size = inner(residual, residual);
+    const double enough = 1e-8 * size;
+    for (int k = 0; k < kGradientSteps && size > enough; ++k) {
+      G.apply(direction, image);
+      const double curvature = inner(direction, image);
+      if (!(curvature > 0)) break;
+      const double along = size / curvature;
+      for (std::size_t i = 0; i < F.n; ++i) e[i] += along * direction[i], residual[i] -= along * image[i];
+      const double before = size;
+      size = inner(residual, residual);
+      for (std::size_t i = 0; i < F.n; ++i) direction[i] = residual[i] + size / before * direction[i];
+    }
+    // A row that could only be closed by a large change is not trusted with it.
+    for (std::size_t i = 0; i < F.n; ++i) G.d[i] *= 1 - std::clamp(e[i], -0.1, 0.1);
   }
+  const std::vector<double>& d = G.d;
   parallel_for(F.n, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t j = 0; j < F.n; ++j) {
@@ -325,7 +363,7 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
     F.closed[i] = all_arrives && std::abs(F.raw_row_sum[i] - 1) <= 6 * F.row_error[i];
   }
   if (options.close_rows) {
-    close_rows(F);
+    close_rows(F, patches.area);
     F.row_sum = row_sums(F);
   }
   monitor.report("form factors", 1);

@@ -13,9 +13,12 @@ enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
 GatherQuality sensor_quality(const SolveOptions& options) {
   const int more = 1 << options.tighten;
   switch (options.accuracy) {
-    case Accuracy::draft: return {16, 768 * more, 128, 16};
-    case Accuracy::standard: return {32, 3072 * more, 256, 32};
-    case Accuracy::fine: return {48, 9216 * more, 1024, 64};
+    case Accuracy::draft:
+      return {16, 768 * more, 128, 16};
+    case Accuracy::standard:
+      return {32, 3072 * more, 256, 32};
+    case Accuracy::fine:
+      return {48, 9216 * more, 1024, 64};
   }
   return {};
 }
@@ -23,9 +26,12 @@ GatherQuality sensor_quality(const SolveOptions& options) {
 GatherQuality vertex_quality(const SolveOptions& options) {
   const int more = 1 << options.tighten;
   switch (options.accuracy) {
-    case Accuracy::draft: return {12, 144 * more, 64, 8};
-    case Accuracy::standard: return {16, 768 * more, 128, 16};
-    case Accuracy::fine: return {32, 3072 * more, 256, 32};
+    case Accuracy::draft:
+      return {12, 144 * more, 64, 8};
+    case Accuracy::standard:
+      return {16, 768 * more, 128, 16};
+    case Accuracy::fine:
+      return {32, 3072 * more, 256, 32};
   }
   return {};
 }

@@ -29,9 +29,9 @@ struct PointIrradiance {
 PointIrradiance gather_at_sensors(const Problem& problem, const Solution& solution, std::span<const SensorPoint> points,
                                   const SolveOptions& options, const Monitor& monitor = {});
 
-/// Fills lightmap.E (and std_error for `path`) with the irradiance at each point's sample position. A point that was not
-/// reached when the monitor stopped keeps what lightmap.E held: fill it with average_to_points() before.
-/// returns  rays traced.
+/// Fills lightmap.E (and std_error for `path`) with the irradiance at each point's sample position. A point that was
+/// not reached when the monitor stopped keeps what lightmap.E held: fill it with average_to_points() before. returns
+/// rays traced.
 unsigned long long gather_at_points(const Problem& problem, const Solution& solution, VertexLightmap& lightmap,
                                     const SolveOptions& options, const Monitor& monitor = {});
 

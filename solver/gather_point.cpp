@@ -40,8 +40,8 @@ class Bundle {
 
   Vec3 direction(double u, double v) const { return cosine_direction(frame_, u, v); }
 
-  /// Up to 16 rays. density[k]: of bundle rays around ray k as a multiple of cos / pi; lamp_rays: shadow rays that share
-  /// the bright patches.
+  /// Up to 16 rays. density[k]: of bundle rays around ray k as a multiple of cos / pi; lamp_rays: shadow rays that
+  /// share the bright patches.
   void look(std::span<const Vec3> directions, std::span<const double> density, int lamp_rays,
             std::span<Spectrum> values) const {
     std::array<Ray, 16> rays;
@@ -122,15 +122,15 @@ Spectrum bright_patches(const Illumination& light, const Strata& strata, const s
       if (!(s.density > 0)) continue;
       const Vec3 d = normalized(s.end - p);
       const int cell = strata.number_of(square_of_direction(frame, d));
-      const double bundle =
-          count[static_cast<std::size_t>(cell)] * strata.count() * dot(frame.n, d) / std::numbers::pi;
+      const double bundle = count[static_cast<std::size_t>(cell)] * strata.count() * dot(frame.n, d) / std::numbers::pi;
       const double lamp = lamp_rays * s.density;
       active |= 1u << k;
       end[static_cast<std::size_t>(k)] = s.end;
       open[static_cast<std::size_t>(k)] = s.irradiance * (lamp / (lamp + bundle));
     }
     if (!active) continue;
-    for (unsigned seen = light.problem.rays.visible16(segments, static_cast<std::uint16_t>(active)); seen; seen &= seen - 1) {
+    for (unsigned seen = light.problem.rays.visible16(segments, static_cast<std::uint16_t>(active)); seen;
+         seen &= seen - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(seen));
       sum += open[k] * light.problem.rays.glass_transmittance(p, end[k]);
     }
@@ -165,7 +165,8 @@ Spectrum gather_point(const Illumination& light, const Field& B, const Vec3& p, 
     for (int first = 0; first < strata.count(); first += 16) {
       for (int k = 0; k < 16; ++k) directions[static_cast<std::size_t>(k)] = direction_in(first + k);
       bundle.look(directions, density, lamp_rays, values);
-      for (int k = 0; k < 16; ++k) pilot[static_cast<std::size_t>(first + k)] = luminous_mean(values[static_cast<std::size_t>(k)]);
+      for (int k = 0; k < 16; ++k)
+        pilot[static_cast<std::size_t>(first + k)] = luminous_mean(values[static_cast<std::size_t>(k)]);
     }
     rays += pilot.size();
     count = share_rays(strata, pilot, quality.rays);

@@ -17,8 +17,8 @@ struct GatherQuality {
 ///
 /// Luminaires and sun by shadow rays, bright glowing patches by shadow rays and by the bundle, weighted by the balance
 /// heuristic. For the rest a pilot sends one ray into each stratum, only to see where its neighbours differ; then fresh
-/// rays, at least one a stratum, look up B (or the sky) where they land. The pilot's values are thrown away: an adaptive
-/// sum that keeps them is biased.
+/// rays, at least one a stratum, look up B (or the sky) where they land. The pilot's values are thrown away: an
+/// adaptive sum that keeps them is biased.
 ///
 /// B    radiosity of each patch [W/m2].
 /// key  of the random stream.

@@ -39,7 +39,8 @@ Seen look_around(const Problem& problem, std::size_t i, int ray_count, std::uint
       const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
       const Vec3 d = direction_to_sun(sun, u[2], u[3]);
       if (dot(d, frame.n) <= 0) continue;
-      seen.sun = problem.rays.first_hit(patches, {point_on_triangle(corners, u[0], u[1]) + frame.n * lift, d}).escaped();
+      seen.sun =
+          problem.rays.first_hit(patches, {point_on_triangle(corners, u[0], u[1]) + frame.n * lift, d}).escaped();
     }
   }
   return seen;

@@ -21,9 +21,12 @@ struct Budget {
 
 Budget budget(Accuracy accuracy) {
   switch (accuracy) {
-    case Accuracy::draft: return {128, 512};
-    case Accuracy::standard: return {256, 2048};
-    case Accuracy::fine: return {512, 8192};
+    case Accuracy::draft:
+      return {128, 512};
+    case Accuracy::standard:
+      return {256, 2048};
+    case Accuracy::fine:
+      return {512, 8192};
   }
   return {};
 }
@@ -110,18 +113,20 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
   for (std::size_t s = 0; s < spend.points; ++s) {
     const double at = (static_cast<double>(s) + random.uniform()) / static_cast<double>(spend.points) * area;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), at);
-    const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
+    const std::size_t i =
+        std::min<std::size_t>(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
     const double u = random.uniform(), v = random.uniform();
     // The map is linear in the corners, so it interpolates their values as well as their positions.
     const auto weight = point_on_triangle({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, u, v);
     for (int k = 0; k < 3; ++k)
       samples[s].x += weight[k] * luminous_mean(lightmap.E[lightmap.corners[i][static_cast<std::size_t>(k)]]);
-    places[s] = {point_on_triangle(patches.corner_positions(PatchId{i}), u, v) +
-                     patches.normal[i] * problem.rays.lift(),
-                 patches.normal[i]};
+    places[s] = {
+        point_on_triangle(patches.corner_positions(PatchId{i}), u, v) + patches.normal[i] * problem.rays.lift(),
+        patches.normal[i]};
   }
-  return compare(problem, samples, [&](std::size_t i) { return places[i]; }, spend.paths,
-                 stream_key(options.seed, kErrorPaths), monitor);
+  return compare(
+      problem, samples, [&](std::size_t i) { return places[i]; }, spend.paths, stream_key(options.seed, kErrorPaths),
+      monitor);
 }
 
 MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,

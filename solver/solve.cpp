@@ -38,7 +38,8 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
     case Method::path:
       return path_trace(light, direct, closure, {paths_per_point(options), options.seed}, monitor);
     case Method::gauss_seidel:
-    case Method::jacobi: break;
+    case Method::jacobi:
+      break;
   }
   return {};
 }

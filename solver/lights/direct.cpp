@@ -64,7 +64,8 @@ class PatchSampler {
 
 template <class Lamp>
 Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
-  if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > 0; })) return Spectrum(0.0);
+  if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > 0; }))
+    return Spectrum(0.0);
   return patch.mean([&](const Vec3& p, const Vec3&) { return open_irradiance(lamp, p, patch.normal()); },
                     [&](const Vec3&, double, double) { return lamp.position; });
 }

@@ -15,8 +15,8 @@ struct DirectOptions {
 
 struct DirectLight {
   Field E;               ///< N x channels, mean irradiance of each patch [W/m2]
-  EnergyBalance energy;  ///< emitted: luminaires' flux, and what sky and sun bring in; escaped and absorbed (by glass and
-                         ///< sides that take no part): the part of the luminaires' flux that misses the patches
+  EnergyBalance energy;  ///< emitted: luminaires' flux, and what sky and sun bring in; escaped and absorbed (by glass
+                         ///< and sides that take no part): the part of the luminaires' flux that misses the patches
   unsigned long long rays = 0;
 };
 

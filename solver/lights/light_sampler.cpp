@@ -119,8 +119,7 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
       const double cos_n = dot(n, d);
-      if (cos_n > 0)
-        sum += problem_.rays.transmittance(p, p + d * (4 * problem_.rays.diameter())) * cos_n;
+      if (cos_n > 0) sum += problem_.rays.transmittance(p, p + d * (4 * problem_.rays.diameter())) * cos_n;
     }
     E += sun.normal_irradiance * sum / sun_rays;
   }

@@ -9,7 +9,8 @@ Spectrum intensity(const PointLuminaire& lamp, const Vec3&) { return lamp.power 
 
 Spectrum intensity(const SpotLuminaire& lamp, const Vec3& d) {
   const double cos_outer = std::cos(lamp.outer_angle), cos_inner = std::cos(lamp.inner_angle);
-  const double ramp = std::clamp((dot(d, lamp.direction) - cos_outer) / std::max(1e-3, cos_inner - cos_outer), 0.0, 1.0);
+  const double ramp =
+      std::clamp((dot(d, lamp.direction) - cos_outer) / std::max(1e-3, cos_inner - cos_outer), 0.0, 1.0);
   return lamp.intensity * (ramp * ramp);
 }
 

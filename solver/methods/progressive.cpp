@@ -209,7 +209,8 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
       }
     }
     residual = light.flux() / emitted;
-    solution.log.push_back("round " + std::to_string(round) + (uniform ? ": ambient" : ": " + std::to_string(solution.iterations) + " shots") +
+    solution.log.push_back("round " + std::to_string(round) +
+                           (uniform ? ": ambient" : ": " + std::to_string(solution.iterations) + " shots") +
                            ", unshot " + std::to_string(residual));
   }
 

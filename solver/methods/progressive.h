@@ -12,13 +12,13 @@
 namespace clerestory {
 
 struct ShootOptions {
-  double stop_fraction = 3e-3;  ///< stop when unshot flux / emitted flux is below this [1], > 0
-  double rays_per_patch = 256;  ///< rays spent on the emitted flux once, for each patch of the scene; sets the noise
-  double batch_share = 0.25;    ///< patches shoot together that have at least this share of the largest unshot flux;
-                                ///< 1: one patch a round, as the paper has it
+  double stop_fraction = 3e-3;    ///< stop when unshot flux / emitted flux is below this [1], > 0
+  double rays_per_patch = 256;    ///< rays spent on the emitted flux once, for each patch of the scene; sets the noise
+  double batch_share = 0.25;      ///< patches shoot together that have at least this share of the largest unshot flux;
+                                  ///< 1: one patch a round, as the paper has it
   double ambient_worth_it = 0.3;  ///< the ambient is shot for good when it leaves less than this share unshot. Higher
                                   ///< saves rounds but brings noise to dim corners: they get it, and give it back
-  int max_rounds = 10'000;      ///< safety net; reaching it sets StopReason::iteration_limit
+  int max_rounds = 10'000;        ///< safety net; reaching it sets StopReason::iteration_limit
   std::uint64_t seed = 1;
 };
 
@@ -26,10 +26,11 @@ struct ShootOptions {
 ///
 /// A shot is a bundle of stratified cosine rays that carry equal flux, more of them the more flux there is to shoot;
 /// every ray lands or escapes, so that no energy is lost or made, and a patch's later shots continue its sequence.
-/// The ambient term e = sum A dB / sum A (1 - rho arrives), of each space that no light links to another, is the uniform
-/// radiosity that would carry the unshot light; in a closed room of one reflectance it makes the mean exact after every round. Once the unshot light is spread
-/// so evenly that e explains most of it, e is shot for good: a uniform radiosity needs no rays, it gives every patch
-/// arrives_i e. What stays unshot may then be negative, and is shot just the same. So rho = 0.9999 needs no more rounds than 0.5.
+/// The ambient term e = sum A dB / sum A (1 - rho arrives), of each space that no light links to another, is the
+/// uniform radiosity that would carry the unshot light; in a closed room of one reflectance it makes the mean exact
+/// after every round. Once the unshot light is spread so evenly that e explains most of it, e is shot for good: a
+/// uniform radiosity needs no rays, it gives every patch arrives_i e. What stays unshot may then be negative, and is
+/// shot just the same. So rho = 0.9999 needs no more rounds than 0.5.
 ///
 /// returns  B, E [W/m2] with the ambient term in E; residual = unshot / emitted flux without it.
 /// Threads: same bits for any thread count. Cost: rays_per_patch x N rays for each time the light goes round.

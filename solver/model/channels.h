@@ -49,9 +49,15 @@ struct Field {
       : channels(channel_count), value(n * static_cast<std::size_t>(channel_count)) {}
 
   std::size_t size() const { return value.size() / static_cast<std::size_t>(channels); }
-  double& at(std::size_t i, int k) { return value[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(k)]; }
-  double at(std::size_t i, int k) const { return value[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(k)]; }
-  Spectrum operator[](std::size_t i) const { return channels == 1 ? Spectrum(at(i, 0)) : Spectrum(at(i, 0), at(i, 1), at(i, 2)); }
+  double& at(std::size_t i, int k) {
+    return value[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(k)];
+  }
+  double at(std::size_t i, int k) const {
+    return value[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(k)];
+  }
+  Spectrum operator[](std::size_t i) const {
+    return channels == 1 ? Spectrum(at(i, 0)) : Spectrum(at(i, 0), at(i, 1), at(i, 2));
+  }
   void set(std::size_t i, const Spectrum& s) {
     for (int k = 0; k < channels; ++k) at(i, k) = s[k];
   }

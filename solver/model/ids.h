@@ -21,6 +21,6 @@ using VertexId = Id<struct VertexTag>;
 using TriangleId = Id<struct TriangleTag>;  ///< a triangle of PatchSet, with two sides
 using PatchId = Id<struct PatchTag>;        ///< one side of a triangle that takes part in transport
 using MaterialId = Id<struct MaterialTag>;
-using SurfaceId = Id<struct SurfaceTag>;    ///< a named object of the model
+using SurfaceId = Id<struct SurfaceTag>;  ///< a named object of the model
 
 }  // namespace clerestory

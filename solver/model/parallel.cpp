@@ -1,11 +1,11 @@
 #include "solver/model/parallel.h"
 
+#include <memory>
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-
-#include <memory>
 
 namespace clerestory {
 namespace {

@@ -16,6 +16,7 @@ void on_one_thread(const std::function<void()>& body);
 
 /// Calls body(begin, end) for disjoint ranges that cover [0, n), at most `grain` long, on several threads. Bodies write
 /// only to what their indices own, so the result does not depend on how ranges fall on threads.
-void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t begin, std::size_t end)>& body);
+void parallel_for(std::size_t n, std::size_t grain,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body);
 
 }  // namespace clerestory

@@ -23,11 +23,11 @@ struct PatchSet {
   int channels = 1;  ///< 1 or 3
 
   // T triangles on V vertices. Triangles that share an edge share its two vertices.
-  std::vector<Vec3> vertices;                               ///< V, local frame [m]
-  std::vector<std::array<VertexId, 3>> corners;             ///< T
-  std::vector<std::array<MaterialId, 2>> side_material;     ///< T, by Side
-  std::vector<std::array<SurfaceId, 2>> side_surface;       ///< T, by Side
-  std::vector<std::array<PatchId, 2>> side_patch;           ///< T, by Side; invalid where that side takes no part
+  std::vector<Vec3> vertices;                            ///< V, local frame [m]
+  std::vector<std::array<VertexId, 3>> corners;          ///< T
+  std::vector<std::array<MaterialId, 2>> side_material;  ///< T, by Side
+  std::vector<std::array<SurfaceId, 2>> side_surface;    ///< T, by Side
+  std::vector<std::array<PatchId, 2>> side_patch;        ///< T, by Side; invalid where that side takes no part
   std::vector<bool> joined;  ///< T, or empty for none: two faces lie here back to back, so the back is a front as well
 
   // N patches.

@@ -24,9 +24,9 @@ constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   return reverse_bits(scramble_reversed(reverse_bits(x), seed));
 }
 
-/// Sobol points of dimensions 1 to 3 (dimension 0 is the bit reversal) for each value of each byte of the index; a point
-/// is the exclusive or over its bytes. From primitive polynomials of degree 1, 2, 3 with initial numbers {1}, {1, 3},
-/// {1, 3, 1} of the new-joe-kuo-6 table.
+/// Sobol points of dimensions 1 to 3 (dimension 0 is the bit reversal) for each value of each byte of the index; a
+/// point is the exclusive or over its bytes. From primitive polynomials of degree 1, 2, 3 with initial numbers {1}, {1,
+/// 3}, {1, 3, 1} of the new-joe-kuo-6 table.
 struct SobolTable {
   std::uint32_t x[4][256][3];  ///< by byte, its value, dimension - 1
 };

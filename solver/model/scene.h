@@ -47,8 +47,8 @@ struct SolverSettings {
 struct Scene {
   std::string file;
   PolygonSoup polygons;
-  std::vector<Material> materials;      ///< by MaterialId
-  std::vector<std::string> surfaces;    ///< names, by SurfaceId
+  std::vector<Material> materials;    ///< by MaterialId
+  std::vector<std::string> surfaces;  ///< names, by SurfaceId
   Lights lights;
   std::vector<SensorSet> sensors;
   SolverSettings settings;

@@ -27,8 +27,8 @@ struct Solution {
   Field std_error;  ///< N, standard error of E; empty unless the method is a random estimate of known error
   EnergyBalance energy;
   StopReason stop = StopReason::converged;
-  long iterations = 0;           ///< shots, sweeps or paths, as the method counts
-  double residual = 0;           ///< unshot or changed flux / emitted flux [1]
+  long iterations = 0;  ///< shots, sweeps or paths, as the method counts
+  double residual = 0;  ///< unshot or changed flux / emitted flux [1]
   unsigned long long rays = 0;
   std::vector<std::string> log;  ///< a line a round, for --verbose
 };

@@ -1,11 +1,11 @@
 #include "solver/visibility/ray_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include <embree3/rtcore.h>
 
 #include "solver/model/parallel.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
@@ -31,6 +32,12 @@ std::vector<std::vector<double>> by_channel(const Field& field) {
 }
 
 }  // namespace
+
+std::string sweep_line(const std::string& method, long sweep, double residual) {
+  char line[96];
+  std::snprintf(line, sizeof line, "%s: sweep %ld, residual %.2g", method.c_str(), sweep, residual);
+  return line;
+}
 
 FullMatrixSystem::FullMatrixSystem(const PatchSet& patches, const FormFactorMatrix& F, const Field& E_direct)
     : rho(by_channel(patches.rho)),

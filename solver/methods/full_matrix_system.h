@@ -30,7 +30,7 @@ struct GatherOptions {
 /// residual of the space vanishes,
 ///   e = sum A r / sum A rho (1 - F rho).
 /// That is a Galerkin two-level method with the shape rho and the test function A, exact for a closed room of one
-/// reflectance; what it leaves decays within some ten sweeps whatever the reflectance.
+/// reflectance; what it leaves decays by 1e-7 within 10 to 60 sweeps, at 0.9999 as at 0.9.
 class FullMatrixSystem {
  public:
   FullMatrixSystem(const PatchSet& patches, const FormFactorMatrix& F, const Field& E_direct);
@@ -74,6 +74,9 @@ class FullMatrixSystem {
   std::vector<std::vector<double>> ambient_loss_;  ///< per channel and space: sum A rho (1 - F rho) [m2]
 };
 
+/// "METHOD: sweep 3, residual 1.2e-05"
+std::string sweep_line(const std::string& method, long sweep, double residual);
+
 template <class Sweep>
 Solution FullMatrixSystem::iterate(std::string method, const GatherOptions& options, const Monitor& monitor,
                                    Sweep sweep) {
@@ -83,7 +86,7 @@ Solution FullMatrixSystem::iterate(std::string method, const GatherOptions& opti
   correct_ambient();
   while (true) {
     const double left = relative_residual();
-    log.push_back(method + ": sweep " + std::to_string(sweeps) + ", residual " + std::to_string(left));
+    log.push_back(sweep_line(method, sweeps, left));
     if (left <= options.residual) {
       stop = StopReason::converged;
       break;

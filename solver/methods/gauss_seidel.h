@@ -10,7 +10,7 @@ namespace clerestory {
 ///
 /// patches   N patches, rho in [0, 1); E_direct: N x channels, irradiance of sky, sun and luminaires [W/m2].
 /// returns   E and B of the patches, energy balance, one log line per sweep; stopped early what is there so far.
-/// Threads: same bits for any thread count. Cost: two passes over F per sweep and channel; 4 to 15 sweeps.
+/// Threads: same bits for any thread count. Cost: two passes over F per sweep and channel; 10 to 35 sweeps.
 /// Source: Cohen & Greenberg, "The hemi-cube: a radiosity solution for complex environments", 1985.
 Solution gauss_seidel(const PatchSet& patches, const FormFactorMatrix& F, const Field& E_direct,
                       const GatherOptions& options = {}, const Monitor& monitor = {});

@@ -13,7 +13,7 @@ namespace clerestory {
 ///
 /// patches   N patches, rho in [0, 1); E_direct: N x channels, irradiance of sky, sun and luminaires [W/m2].
 /// returns   E and B of the patches, energy balance, one log line per sweep; stopped early what is there so far.
-/// Threads: same bits for any thread count. Cost: one pass over F per sweep and channel; 5 to 40 sweeps.
+/// Threads: same bits for any thread count. Cost: one pass over F per sweep and channel; 15 to 60 sweeps.
 Solution jacobi(const PatchSet& patches, const FormFactorMatrix& F, const Field& E_direct,
                 const GatherOptions& options = {}, const Monitor& monitor = {});
 

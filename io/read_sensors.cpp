@@ -8,6 +8,7 @@
 
 #include "io/input_file.h"
 #include "io/text.h"
+#include "io/unit_vector.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -62,9 +63,8 @@ SensorPoint point_of(const std::vector<std::string_view>& cells, const Order& or
     value[k] = *number;
   }
   const Vec3 n{value[3], value[4], value[5]};
-  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  if (largest == 0) throw InputError(text(where, "the normal is 0,0,0; it needs a direction, 0,0,1 is up"));
-  return {{value[0], value[1], value[2]}, normalized(Vec3{n.x / largest, n.y / largest, n.z / largest})};
+  if (n == Vec3{}) throw InputError(text(where, "the normal is 0,0,0; it needs a direction, 0,0,1 is up"));
+  return {{value[0], value[1], value[2]}, unit_vector(n)};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
+#include "io/unit_vector.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -113,10 +114,8 @@ std::optional<Vec3> JsonObject::vector(std::string_view key) const {
 std::optional<Vec3> JsonObject::unit_vector(std::string_view key) const {
   const std::optional<Vec3> v = vector(key);
   if (!v) return std::nullopt;
-  // Scaled by the largest part first: 1e200 and 1e-200 are directions as well.
-  const double largest = std::max({std::abs(v->x), std::abs(v->y), std::abs(v->z)});
-  if (largest == 0) throw InputError(text(place(key), " = [0, 0, 0] has no direction"));
-  return normalized(Vec3{v->x / largest, v->y / largest, v->z / largest});
+  if (*v == Vec3{}) throw InputError(text(place(key), " = [0, 0, 0] has no direction"));
+  return clerestory::unit_vector(*v);
 }
 
 std::optional<JsonColour> JsonObject::colour(std::string_view key, const Range& range) const {

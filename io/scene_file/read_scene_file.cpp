@@ -13,6 +13,7 @@
 #include "io/scene_file/place_model.h"
 #include "io/scene_file/sensor_entries.h"
 #include "io/text.h"
+#include "io/unit_vector.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -32,9 +33,10 @@ std::array<double, 16> read_transform(const JsonObject& object) {
         text(place, ": the last row is not 0, 0, 0, 1; ",
              by_columns ? "the numbers go row by row, not column by column" : "only affine transforms are read"));
   }
-  const Vec3 rows[3] = {{t[0], t[1], t[2]}, {t[4], t[5], t[6]}, {t[8], t[9], t[10]}};
-  const double size = length(rows[0]) * length(rows[1]) * length(rows[2]);
-  if (!(std::abs(dot(rows[0], cross(rows[1], rows[2]))) > 1e-12 * size)) {
+  // Rows first brought to length 1, so that neither a small nor a huge scale counts as flat.
+  const Vec3 x = unit_vector({t[0], t[1], t[2]}), y = unit_vector({t[4], t[5], t[6]}),
+             z = unit_vector({t[8], t[9], t[10]});
+  if (!(std::abs(dot(x, cross(y, z))) > 1e-12)) {
     throw InputError(place + ": flattens the model; its 3 x 3 part has no inverse");
   }
   return t;

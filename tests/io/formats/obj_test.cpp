@@ -1,0 +1,139 @@
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/io/reading.h"
+
+namespace clerestory {
+namespace {
+
+class Obj : public ::testing::Test {
+ protected:
+  Scene read(std::string_view obj, const ReadOptions& options = {}) {
+    return read_scene(folder_.write("a.obj", obj), options);
+  }
+  std::string refused(std::string_view obj) { return refusal(folder_.write("a.obj", obj)); }
+  TempFolder folder_;
+};
+
+constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+TEST_F(Obj, NamesOfObjectsAndMaterialsSurvive) {
+  const Scene scene = read(kRoomObj);
+  EXPECT_EQ(scene.surfaces, (std::vector<std::string>{"floor", "north wall"}));
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(scene.materials[0].name, "wood");
+  EXPECT_EQ(scene.materials[1].name, "wall paint");
+}
+
+TEST_F(Obj, PolygonsKeepTheirCornersAndHolesTheirDoubledEdge) {
+  const Scene scene =
+      read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 1 0\nf 1 2 3 4 1 5 6 7 8 5\n");
+  EXPECT_EQ(scene.polygons.face_count(), 1u);
+  EXPECT_EQ(scene.polygons.corner.size(), 10u);
+  EXPECT_EQ(scene.polygons.vertices.size(), 8u);
+  EXPECT_DOUBLE_EQ(area_vector(scene, 0).z / 2, 15);
+}
+
+TEST_F(Obj, NegativeIndicesTexturesNormalsAndContinuedLinesAreUnderstood) {
+  const Scene scene =
+      read("v 0 0 0\r\nv 1 0 0\r\nv \\\r\n1 1 0\r\nvt 0 0\nvn 0 0 1\nf -3/1/1 -2//1 \\\n -1/1 # here\n");
+  ASSERT_EQ(scene.polygons.face_count(), 1u);
+  EXPECT_EQ(scene.polygons.vertices[2], (Vec3{1, 1, 0}));
+}
+
+TEST_F(Obj, AMillionMetresAwayNoDigitIsLost) {
+  const Scene scene =
+      read("v 1000000.000000001 5000000.25 0\nv 1000001.0000000012 5000000 0\nv 1000000 5000001 0\nf 1 2 3\n");
+  EXPECT_EQ(scene.polygons.vertices[0], (Vec3{1000000.000000001, 5000000.25, 0}));
+  EXPECT_EQ(scene.polygons.vertices[1].x, 1000001.0000000012);
+}
+
+TEST_F(Obj, UnitAndUpOfTheCommandLineApply) {
+  const Scene scene =
+      read("v 0 0 0\nv 1000 0 0\nv 0 2000 0\nv 0 0 3000\nf 1 2 3\nf 1 2 4\n", {.unit = "mm", .up = "y", .sky = {}});
+  EXPECT_EQ(extent(scene).upper, (Vec3{1, 0, 2}));
+  EXPECT_EQ(extent(scene).lower, (Vec3{0, -3, 0}));  // the file's z comes towards the viewer
+  EXPECT_GT(area_vector(read("v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n", {.unit = {}, .up = "y", .sky = {}}), 0).z, 0);
+}
+
+TEST_F(Obj, MtlColoursAreReflectancesAndKeIsARadiance) {
+  folder_.write("my materials.mtl",
+                "newmtl red wall\nKd 0.6 0.1 0.1\nnewmtl lamp\nKd 0.2\nKe 3 2 1\nnewmtl pane\nKd 1 1 1\nd 0.1\n");
+  const Scene scene = read(
+      "mtllib my materials.mtl\nusemtl red wall\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl lamp\nf 1 2 3\nusemtl "
+      "pane\nf 1 2 3\n");
+  EXPECT_EQ(material(scene, "red wall").reflectance, Spectrum(0.6, 0.1, 0.1));
+  EXPECT_EQ(material(scene, "lamp").reflectance, Spectrum(0.2));
+  EXPECT_EQ(material(scene, "lamp").exitance, std::numbers::pi * Spectrum(3, 2, 1));
+  EXPECT_EQ(material(scene, "pane").kind, MaterialKind::glass);
+  EXPECT_EQ(material(scene, "pane").transmittance, Spectrum(0.9));
+}
+
+TEST_F(Obj, WhiteIsTakenAsNearlyWhiteWithOneWarning) {
+  folder_.write("a.mtl", "newmtl a\nKd 1 1 1\nnewmtl b\nKd 1 0 0\n");
+  const Scene scene = read("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  EXPECT_EQ(material(scene, "a").reflectance, Spectrum(0.99));
+  EXPECT_EQ(material(scene, "b").reflectance, Spectrum(0.99, 0, 0));
+  EXPECT_EQ(all_warnings(scene), "a.obj: reflectance 1 or more is taken as 0.99 for 'a', 'b'\n");
+}
+
+TEST_F(Obj, FacesWithoutAMaterialReflectHalfWithAWarning) {
+  const Scene scene = read(kTriangle);
+  EXPECT_EQ(material(scene, "default").reflectance, Spectrum(0.5));
+  EXPECT_EQ(scene.surfaces[0], "a");
+  EXPECT_EQ(all_warnings(scene), "a.obj: nothing describes the material 'default'; reflectance 0.5 is assumed\n");
+}
+
+TEST_F(Obj, AMissingMaterialFileIsAWarning) {
+  const Scene scene = read("mtllib gone.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_NE(all_warnings(scene).find("gone.mtl' is missing"), std::string::npos);
+}
+
+TEST_F(Obj, LinesPointsAndUnusedVerticesAreLeftOut) {
+  const Scene scene = read("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\np 1\nf 2 3 4\n");
+  EXPECT_EQ(scene.polygons.vertices.size(), 3u);
+}
+
+TEST_F(Obj, SizesThatLookLikeMillimetresAreWarnedOf) {
+  const std::string_view in_mm = "v 0 0 0\nv 5000 0 0\nv 0 4000 0\nf 1 2 3\n";
+  EXPECT_NE(all_warnings(read(in_mm)).find("was it drawn in millimetres? Then say \"unit\": \"mm\" (--unit mm)"),
+            std::string::npos);
+  EXPECT_EQ(all_warnings(read(in_mm, {.unit = "mm", .up = {}, .sky = {}})).find("millimetres"), std::string::npos);
+  EXPECT_NE(all_warnings(read(kTriangle, {.unit = "mm", .up = {}, .sky = {}})).find("larger than assumed"),
+            std::string::npos);
+}
+
+TEST_F(Obj, NamesThatAreNotUtf8AreMadeSo) {
+  EXPECT_EQ(read("o caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").surfaces[0], "caf?");
+  EXPECT_EQ(read("o caf\xc3\xa9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").surfaces[0], "caf\xc3\xa9");
+}
+
+TEST_F(Obj, BadNumbersAndIndicesNameTheirLine) {
+  EXPECT_EQ(refused("v 0 0 0\nv 1 abc 3\n"), "a.obj:2: vertex 2: 'abc' is not a number; 'v' needs x y z");
+  EXPECT_EQ(refused("v 0 0\n"), "a.obj:1: vertex 1: '' is not a number; 'v' needs x y z");
+  EXPECT_EQ(refused("v 0 nan 0\n"), "a.obj:1: vertex 1: y = nan is outside [-1e12, 1e12]");
+  EXPECT_EQ(refused("v 0 0 inf\n"), "a.obj:1: vertex 1: z = inf is outside [-1e12, 1e12]");
+  EXPECT_EQ(refused("v 1e400 0 0\n"), "a.obj:1: vertex 1: x = 1e400 is outside [-1e12, 1e12]");
+  EXPECT_EQ(refused("v 2e12 0 0\n"), "a.obj:1: vertex 1: x = 2e12 is outside [-1e12, 1e12]");
+  EXPECT_EQ(refused("v 0 0 0\nf 1 2 3\n"), "a.obj:2: a face uses vertex 2, but 1 vertices stand before it");
+  EXPECT_EQ(refused("v 0 0 0\nf 0 1 1\n"), "a.obj:2: a face uses vertex 0, but 1 vertices stand before it");
+  EXPECT_EQ(refused("v 0 0 0\nf -1 -2 1\n"), "a.obj:2: a face uses vertex -2, but 1 vertices stand before it");
+  EXPECT_EQ(refused("v 0 0 0\nf 1 x 1\n"),
+            "a.obj:2: 'x' is not a corner of a face; expected v, v/vt, v//vn or v/vt/vn");
+}
+
+TEST_F(Obj, FilesWithoutAFaceAreRefused) {
+  EXPECT_NE(refused("v 0 0 0\nl 1 1\n").find("a.obj: has no faces"), std::string::npos);
+  EXPECT_NE(refused("once upon a time\n").find("a.obj: has no faces"), std::string::npos);
+}
+
+TEST_F(Obj, ReflectancesOfTheMaterialFileMustBeNumbers) {
+  folder_.write("a.mtl", "newmtl a\nKd 0.5 red 0.5\n");
+  EXPECT_EQ(refused("mtllib a.mtl\n"), "a.mtl:2: 'red' is not a number from 0 to 1e+12");
+  folder_.write("a.mtl", "newmtl a\nKd -1 0 0\n");
+  EXPECT_EQ(refused("mtllib a.mtl\n"), "a.mtl:2: '-1' is not a number from 0 to 1e+12");
+}
+
+}  // namespace
+}  // namespace clerestory

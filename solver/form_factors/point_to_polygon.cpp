@@ -24,7 +24,7 @@ double edge_term(const Vec3& n, const Vec3& a, const Vec3& b) {
 double point_to_polygon(const Vec3& p, const Vec3& n, std::span<const Vec3> polygon) {
   if (polygon.size() < 3) return 0;
   // The polygon's front must face the point. Without this, rounding would leave noise for a point in its plane.
-  const Vec3 facing = area_vector(polygon);
+  const Vec3 facing = vector_area(polygon);
   if (dot(facing, p - polygon[0]) <= 0) return 0;
 
   double contour = 0;

@@ -29,7 +29,7 @@ bool clip(std::span<const Vec3> polygon, const Plane& plane, double on_plane, Em
 
 }  // namespace
 
-Vec3 area_vector(std::span<const Vec3> polygon) {
+Vec3 vector_area(std::span<const Vec3> polygon) {
   Vec3 sum;
   // Relative to the first corner, so that polygons far from the origin lose no digits.
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
@@ -63,7 +63,7 @@ ClippedTriangle clip_to_front(const std::array<Vec3, 3>& triangle, const Plane& 
 
 std::vector<std::array<Vec3, 3>> triangulate(std::span<const Vec3> polygon) {
   std::vector<std::array<Vec3, 3>> triangles;
-  const Vec3 normal = normalized(area_vector(polygon));
+  const Vec3 normal = normalized(vector_area(polygon));
   std::vector<Vec3> rest(polygon.begin(), polygon.end());
   const auto twice_area = [&](const Vec3& a, const Vec3& b, const Vec3& c) { return dot(normal, cross(b - a, c - a)); };
   while (rest.size() >= 3) {

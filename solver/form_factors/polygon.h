@@ -10,7 +10,7 @@
 namespace clerestory {
 
 /// Normal of the polygon's front times its area [m2]: half the sum of cross products (Newell). Zero when degenerate.
-Vec3 area_vector(std::span<const Vec3> polygon);
+Vec3 vector_area(std::span<const Vec3> polygon);
 
 /// Mean of the corners, and the largest distance of a corner from it.
 struct BoundingSphere {

@@ -26,7 +26,7 @@ double by_area(const Triangle& a, const Triangle& b, int& budget) {
   if (--budget < 0) return 0;
   const BoundingSphere sphere_a = bounding_sphere(a), sphere_b = bounding_sphere(b);
   if (sphere_a.radius + sphere_b.radius <= kFarRatio * length(sphere_b.centre - sphere_a.centre)) {
-    const Vec3 area_a = area_vector(a), area_b = area_vector(b);
+    const Vec3 area_a = vector_area(a), area_b = vector_area(b);
     const Vec3 normal_a = normalized(area_a), normal_b = normalized(area_b);
     const auto& rule = triangle_rule_36();
     return length(area_a) * length(area_b) *
@@ -67,7 +67,7 @@ double exchange_area(std::span<const Vec3> polygon1, std::span<const Vec3> polyg
     return corners;
   };
   const std::vector<Vec3> p1 = moved(polygon1), p2 = moved(polygon2);
-  const Vec3 area1 = area_vector(p1), area2 = area_vector(p2);
+  const Vec3 area1 = vector_area(p1), area2 = vector_area(p2);
   if (!(dot(area1, area1) > 0) || !(dot(area2, area2) > 0)) return 0;
   const Plane plane1 = Plane::through(p1[0], normalized(area1)), plane2 = Plane::through(p2[0], normalized(area2));
   double span = 0;
@@ -95,7 +95,7 @@ double exchange_area(std::span<const Vec3> polygon1, std::span<const Vec3> polyg
 }
 
 double polygon_to_polygon(std::span<const Vec3> polygon1, std::span<const Vec3> polygon2) {
-  const double area = length(area_vector(polygon1));
+  const double area = length(vector_area(polygon1));
   return area > 0 ? std::min(exchange_area(polygon1, polygon2) / area, 1.0) : 0;
 }
 

@@ -158,7 +158,7 @@ void Blockers::find_screens(const PatchSet& patches, const std::vector<std::uint
   for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
     if (!blocks[t] || patches.is_glass(TriangleId{t})) continue;
     const auto corner = corners_of(patches, t);
-    normal[t] = normalized(area_vector(corner));
+    normal[t] = normalized(vector_area(corner));
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 &a = corner[k], &b = corner[(k + 1) % 3];
       sides.push_back(before(a, b) ? SharedEdge{a, b, t} : SharedEdge{b, a, t});
@@ -186,7 +186,7 @@ void Blockers::find_screens(const PatchSet& patches, const std::vector<std::uint
     bool flat = true;
     for (const std::size_t t : members) {
       const auto corner = corners_of(patches, t);
-      area += length(area_vector(corner));
+      area += length(vector_area(corner));
       for (const Vec3& x : corner) {
         flat &= std::abs(dot(frame.n, x) - offset) <= touching_;
         points.push_back(x);
@@ -194,7 +194,7 @@ void Blockers::find_screens(const PatchSet& patches, const std::vector<std::uint
     }
     const std::vector<Vec3> hull = convex_hull(points, frame);
     // Convex, and nowhere covered twice, when the triangles fill their hull.
-    if (!flat || hull.size() < 3 || std::abs(length(area_vector(hull)) - area) > 1e-9 * area) continue;
+    if (!flat || hull.size() < 3 || std::abs(length(vector_area(hull)) - area) > 1e-9 * area) continue;
     Screen screen;
     screen.normal = frame.n, screen.offset = offset, screen.box = Box::around(hull);
     for (std::size_t k = 0; k < hull.size(); ++k) {

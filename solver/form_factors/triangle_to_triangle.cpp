@@ -51,11 +51,11 @@ double clipped_exchange(const QuadratureTriangle& a, const QuadratureTriangle& b
   double sum = 0;
   for (std::size_t i = 2; i < front_a.size; ++i) {
     const std::array<Vec3, 3> piece_a{front_a.corner[0], front_a.corner[i - 1], front_a.corner[i]};
-    const double area_a = length(area_vector(piece_a));
+    const double area_a = length(vector_area(piece_a));
     const auto points_a = rule.on(piece_a);
     for (std::size_t j = 2; j < front_b.size; ++j) {
       const std::array<Vec3, 3> piece_b{front_b.corner[0], front_b.corner[j - 1], front_b.corner[j]};
-      sum += area_a * length(area_vector(piece_b)) *
+      sum += area_a * length(vector_area(piece_b)) *
              mean_kernel(rule, points_a, a.normal, a.offset, rule.on(piece_b), b.normal, b.offset);
     }
   }
@@ -65,7 +65,7 @@ double clipped_exchange(const QuadratureTriangle& a, const QuadratureTriangle& b
 }  // namespace
 
 QuadratureTriangle::QuadratureTriangle(const std::array<Vec3, 3>& corners) : corner(corners) {
-  const Vec3 scaled = area_vector(corners);
+  const Vec3 scaled = vector_area(corners);
   area = length(scaled);
   normal = normalized(scaled);
   offset = dot(normal, corners[0]);

@@ -1,9 +1,16 @@
 #include "solver/solve.h"
 
+#include <stdexcept>
+
 #include "solver/closure.h"
+#include "solver/form_factors/form_factor_matrix.h"
 #include "solver/lights/direct.h"
+#include "solver/methods/gauss_seidel.h"
+#include "solver/methods/jacobi.h"
 #include "solver/methods/path.h"
 #include "solver/methods/progressive.h"
+#include "solver/model/units.h"
+#include "solver/noisy_patches.h"
 
 namespace clerestory {
 namespace {
@@ -11,6 +18,17 @@ namespace {
 int by_accuracy(Accuracy accuracy, int draft, int standard, int fine) {
   return accuracy == Accuracy::draft ? draft : accuracy == Accuracy::standard ? standard : fine;
 }
+
+/// The gathers know light as it arrives; a luminaire's flux that misses the patches belongs to the balance too.
+void count_luminaires(EnergyBalance& energy, const PatchSet& patches, const DirectLight& direct) {
+  double arrived = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) arrived += patches.area[i] * luminous_mean(direct.E[i]);
+  energy.emitted += direct.energy.emitted - arrived;
+  energy.escaped += direct.energy.escaped;
+  energy.absorbed += direct.energy.absorbed;
+}
+
+constexpr double kFewestRays = 64;  ///< a patch met by fewer is known to worse than 12 %
 
 }  // namespace
 
@@ -27,21 +45,27 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
                                      .sky_rays = by_accuracy(options.accuracy, 128, 256, 1024) * more,
                                      .seed = options.seed};
   const DirectLight direct = direct_light(light, direct_options, monitor);
-  const Closure closure = measure_closure(problem, by_accuracy(options.accuracy, 32, 64, 128), options.seed);
+  const auto closure = [&] {
+    return measure_closure(problem, by_accuracy(options.accuracy, 32, 64, 128), options.seed);
+  };
   switch (options.method) {
     case Method::progressive: {
       const ShootOptions shoot_options{.stop_fraction = by_accuracy(options.accuracy, 10, 3, 1) * 1e-3,
                                        .rays_per_patch = by_accuracy(options.accuracy, 64, 256, 1024) * 1.0 * more,
                                        .seed = options.seed};
-      return shoot(problem, direct, closure, shoot_options, monitor);
+      Solution solution = shoot(problem, direct, closure(), shoot_options, monitor);
+      const GatherQuality quality{.grid = 12, .rays = by_accuracy(options.accuracy, 144, 288, 576), .lamp_rays = 64};
+      const std::size_t gathered = gather_noisy_patches(light, solution, kFewestRays, quality, options.seed, monitor);
+      solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
+      return solution;
     }
     case Method::path:
-      return path_trace(light, direct, closure, {paths_per_point(options), options.seed}, monitor);
+      return path_trace(light, direct, closure(), {paths_per_point(options), options.seed}, monitor);
     case Method::gauss_seidel:
     case Method::jacobi:
       break;
   }
-  return {};
+  throw std::logic_error("unknown method");
 }
 
 }  // namespace clerestory

@@ -227,6 +227,7 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
   solution.energy.escaped += light.escaped;
   solution.energy.unshot = light.net_flux();
   solution.residual = residual;
+  solution.flux_per_ray = flux_per_ray;
   solution.rays += direct.rays + closure.rays;
   return solution;
 }

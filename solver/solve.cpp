@@ -62,8 +62,14 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
     case Method::path:
       return path_trace(light, direct, closure(), {paths_per_point(options), options.seed}, monitor);
     case Method::gauss_seidel:
-    case Method::jacobi:
-      break;
+    case Method::jacobi: {
+      const FormFactorMatrix F = form_factor_matrix(problem.patches, problem.rays, {.seed = options.seed}, monitor);
+      const auto gather = options.method == Method::jacobi ? jacobi : gauss_seidel;
+      Solution solution = gather(problem.patches, F, direct.E, {}, monitor);
+      count_luminaires(solution.energy, problem.patches, direct);
+      solution.rays += direct.rays + F.rays;
+      return solution;
+    }
   }
   throw std::logic_error("unknown method");
 }

@@ -83,10 +83,18 @@ PatchSet to_patches(const Scene& scene, const FaceComplex& complex, const std::v
 MeshedScene build_patches(const Scene& scene, const MeshOptions& options, const Monitor& monitor) {
   MeshedScene result;
   MeshReport& report = result.report;
-  FaceComplex complex = clean(scene, report);
-  count_edges(complex, report);
-  const std::vector<PlaneGroup> groups = group_by_plane(complex);
-  Drawing drawing = imprint_contacts(complex, groups, report);
+  FaceComplex complex;
+  std::vector<PlaneGroup> groups;
+  Drawing drawing;
+  for (const Tolerance& allowed : kTolerances) {
+    report = {};
+    complex = clean(scene, allowed, report);
+    count_edges(complex, report);
+    groups = group_by_plane(complex);
+    drawing = imprint_contacts(complex, groups, report);
+    report.tolerance = allowed.contact * complex.size;
+    if (drawing.settled) break;
+  }
   const std::vector<PlanarDomain> domains =
       join_planar_regions(complex, groups, scene.materials, std::move(drawing), report);
   const double longest = longest_element(scene, complex, domains, options);

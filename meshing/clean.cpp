@@ -21,12 +21,11 @@ bool is_usable(const Vec3& p) { return std::abs(p.x) < 1e100 && std::abs(p.y) < 
 double on_grid(double x) { return std::nearbyint(x * 0x1p32) * 0x1p-32; }
 
 struct Welder {
-  explicit Welder(FaceComplex& c) : complex(c), index(c.vertices, kWeld) {}
+  explicit Welder(FaceComplex& c) : complex(c), index(c.vertices, c.allowed.contact) {}
   std::uint32_t operator()(const Vec3& p, double tolerance) {
     const std::uint32_t known = index.find(p, tolerance);
     if (known != PointIndex::kNone) return known;
-    const auto id = static_cast<std::uint32_t>(complex.vertices.size());
-    complex.vertices.push_back(p);
+    const std::uint32_t id = complex.add_vertex(p, complex.allowed.contact);
     index.add(id);
     return id;
   }
@@ -39,7 +38,7 @@ bool has_area(const FaceComplex& complex, const std::array<std::uint32_t, 3>& c)
   const Vec3 a = complex.vertices[c[0]], b = complex.vertices[c[1]], d = complex.vertices[c[2]];
   const double longest = std::max({length(b - a), length(d - b), length(a - d)});
   const double height = length(cross(b - a, d - a)) / longest;
-  return height > std::min(kWeld, 1e-3 * longest);
+  return height > std::min(kWeldShare * complex.allowed.contact, 0.1 * complex.allowed.local_share * longest);
 }
 
 /// Drops triangles that repeat one of the same material, wound the same way; counts those wound the other way.
@@ -84,7 +83,7 @@ void drop_duplicates(FaceComplex& complex, MeshReport& report) {
 
 }  // namespace
 
-FaceComplex clean(const Scene& scene, MeshReport& report) {
+FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& report) {
   const PolygonSoup& soup = scene.polygons;
   const std::size_t face_count = soup.face_count();
   report.input_faces = face_count;
@@ -105,6 +104,7 @@ FaceComplex clean(const Scene& scene, MeshReport& report) {
   }
 
   FaceComplex complex;
+  complex.allowed = allowed;
   if (extent.lower.x <= extent.upper.x) {
     report.lower = extent.lower;
     report.upper = extent.upper;
@@ -116,7 +116,7 @@ FaceComplex clean(const Scene& scene, MeshReport& report) {
 
   // Vertices that hang on small faces weld with a small tolerance.
   std::vector<Vec3> local(soup.vertices.size());
-  std::vector<double> tolerance(soup.vertices.size(), kWeld);
+  std::vector<double> tolerance(soup.vertices.size(), kWeldShare * allowed.contact);
   for (std::size_t f = 0; f < face_count; ++f) {
     if (!usable[f]) continue;
     Box box;
@@ -128,7 +128,8 @@ FaceComplex clean(const Scene& scene, MeshReport& report) {
     // A face that is itself a point says nothing about the detail around it.
     const double extent_of_face = length(box.upper - box.lower);
     if (extent_of_face <= 1e-9) continue;
-    for (const std::uint32_t v : corners_of(f)) tolerance[v] = std::min(tolerance[v], kLocalShare * extent_of_face);
+    for (const std::uint32_t v : corners_of(f))
+      tolerance[v] = std::min(tolerance[v], complex.allowed.local_share * extent_of_face);
   }
 
   Welder weld(complex);
@@ -151,7 +152,7 @@ FaceComplex clean(const Scene& scene, MeshReport& report) {
     while (ids.size() > 1 && ids.back() == ids.front()) ids.pop_back();
     for (const std::uint32_t v : ids) polygon.push_back(complex.vertices[v]);
     const PolygonTriangles pieces = triangulate_polygon(polygon);
-    for (const Vec3& p : pieces.crossings) ids.push_back(weld(p, kWeld));
+    for (const Vec3& p : pieces.crossings) ids.push_back(weld(p, kWeldShare * allowed.contact));
     bool any = false;
     for (const auto& t : pieces.triangles) {
       const std::array<std::uint32_t, 3> corner{ids[t[0]], ids[t[1]], ids[t[2]]};
@@ -171,6 +172,13 @@ FaceComplex clean(const Scene& scene, MeshReport& report) {
                      std::to_string(report.degenerate_faces) +
                      " without area); give a model with surfaces, and check that its export includes meshes.");
   drop_duplicates(complex, report);
+  for (const Face& f : complex.faces) {
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, length(complex.vertices[f.corner[(k + 1) % 3]] - complex.vertices[f.corner[k]]));
+    for (const std::uint32_t v : f.corner)
+      complex.tolerance[v] = std::min(complex.tolerance[v], complex.allowed.local_share * longest);
+  }
   return complex;
 }
 

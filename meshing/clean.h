@@ -11,7 +11,8 @@ namespace clerestory {
 /// triangulates polygons, drops triangles without area and those that repeat another. Triangles that repeat another
 /// with opposite winding are counted and kept: resolve_overlaps gives each its side.
 ///
+/// allowed  what the complex takes for rounding.
 /// throws  InputError naming the file and what was dropped when nothing is left.
-FaceComplex clean(const Scene& scene, MeshReport& report);
+FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& report);
 
 }  // namespace clerestory

@@ -65,20 +65,23 @@ std::optional<Contact> contact(const FaceComplex& complex, std::uint32_t face_a,
                                const Plane& plane_a, const Plane& plane_b) {
   const Face &a = complex.faces[face_a], &b = complex.faces[face_b];
   const double tolerance =
-      std::min(kContact, kLocalShare * std::min(longest_edge(complex, a), longest_edge(complex, b)));
+      std::min(complex.allowed.contact,
+               complex.allowed.local_share * std::min(longest_edge(complex, a), longest_edge(complex, b)));
+  // Faces that are almost parallel meet in no particular line.
+  const Vec3 along = cross(plane_a.n, plane_b.n);
+  if (length(along) < 2e-3) return std::nullopt;
   const auto ta = trace(complex, a, plane_b, tolerance);
   if (!ta) return std::nullopt;
   const auto tb = trace(complex, b, plane_a, tolerance);
   if (!tb) return std::nullopt;
   // Along the common line: the later of the starts to the earlier of the ends.
-  const Vec3 along = normalized(cross(plane_a.n, plane_b.n));
   auto [a0, a1] = ta->end;
   auto [b0, b1] = tb->end;
   if (dot(a1 - a0, along) < 0) std::swap(a0, a1);
   if (dot(b1 - b0, along) < 0) std::swap(b0, b1);
   const Vec3 start = dot(b0 - a0, along) > 0 ? b0 : a0;
   const Vec3 end = dot(b1 - a1, along) < 0 ? b1 : a1;
-  if (dot(end - start, along) < -tolerance) return std::nullopt;
+  if (dot(end - start, along) < -tolerance * length(along)) return std::nullopt;
   // Between nearly parallel faces the line is ill defined; trust only what lies on both.
   for (const Vec3& p : {start, end})
     if (distance_to_segment(p, a0, a1) > 3 * tolerance || distance_to_segment(p, b0, b1) > 3 * tolerance)
@@ -92,7 +95,7 @@ std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector
   std::vector<Box> boxes(count);
   for (std::size_t f = 0; f < count; ++f) {
     for (const std::uint32_t v : complex.faces[f].corner) boxes[f].add(complex.vertices[v]);
-    boxes[f] = boxes[f].grown(kContact / 2);
+    boxes[f] = boxes[f].grown(complex.allowed.contact / 2);
   }
   const BoxTree tree(boxes);
   constexpr std::size_t kGrain = 256;
@@ -147,7 +150,7 @@ std::size_t split(const FaceComplex& complex, std::vector<Line>& lines, const st
   std::vector<Box> boxes(used.size());
   for (std::size_t k = 0; k < used.size(); ++k) {
     boxes[k].add(complex.vertices[used[k]]);
-    boxes[k] = boxes[k].grown(kContact);
+    boxes[k] = boxes[k].grown(complex.allowed.contact);
   }
   const BoxTree tree(std::move(boxes));
 
@@ -156,7 +159,7 @@ std::size_t split(const FaceComplex& complex, std::vector<Line>& lines, const st
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3 a = complex.vertices[ends[k][0]], b = complex.vertices[ends[k][1]];
       const Vec3 d = b - a;
-      const double dd = dot(d, d), tolerance = std::min(kContact, kLocalShare * std::sqrt(dd));
+      const double dd = dot(d, d), tolerance = complex.line_tolerance(ends[k][0], ends[k][1]);
       std::vector<std::pair<double, std::uint32_t>> on;
       const auto place = [&](std::uint32_t v) { return dot(complex.vertices[v] - a, d) / dd; };
       tree.visit_if([&](const Box& box) { return box.touches_segment(a, b); },
@@ -164,7 +167,8 @@ std::size_t split(const FaceComplex& complex, std::vector<Line>& lines, const st
                       const std::uint32_t v = used[i];
                       if (v == ends[k][0] || v == ends[k][1]) return;
                       const double t = place(v);
-                      if (t <= 0 || t >= 1 || length(complex.vertices[v] - a - d * t) > tolerance) return;
+                      if (t <= 0 || t >= 1) return;
+                      if (length(complex.vertices[v] - a - d * t) > std::min(tolerance, complex.tolerance[v])) return;
                       on.push_back({t, v});
                     });
       if (const auto it = forced.find(ends[k]); it != forced.end())
@@ -227,7 +231,7 @@ std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, 
     found.push_back({{li.a, li.b},
                      {lj.a, lj.b},
                      ((a + (b - a) * u) + (c + (d - c) * v)) / 2,
-                     std::min(kWeld, kLocalShare * std::min(li2, lj2))});
+                     std::min(complex.line_tolerance(li.a, li.b), complex.line_tolerance(lj.a, lj.b))});
   };
   if (lines.size() < 24) {
     for (std::size_t i = 0; i < lines.size(); ++i)
@@ -263,6 +267,17 @@ std::vector<std::vector<Crossing>> crossings_by_group(const FaceComplex& complex
   return found;
 }
 
+/// Rather a line less than a drawing that crosses itself: drops one of each two that cross.
+void drop_crossing(std::vector<Line>& lines, const std::vector<std::vector<Crossing>>& found) {
+  std::vector<Line> dropped;
+  for (std::uint32_t g = 0; g < found.size(); ++g)
+    for (const Crossing& c : found[g]) dropped.push_back(line(g, c.second[0], c.second[1]));
+  keep_unique(dropped);
+  std::vector<Line> kept;
+  std::set_difference(lines.begin(), lines.end(), dropped.begin(), dropped.end(), std::back_inserter(kept));
+  lines = std::move(kept);
+}
+
 }  // namespace
 
 void split_at_vertices(const FaceComplex& complex, std::vector<Line>& lines) { split(complex, lines, {}, 0); }
@@ -281,13 +296,12 @@ Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& gr
   // T-junctions: vertices of the model inside edges of the model.
   report.t_junctions = split(complex, drawing.lines, {}, first_new);
 
-  PointIndex index(complex.vertices, kContact);
+  PointIndex index(complex.vertices, complex.allowed.contact);
   for (std::uint32_t v = 0; v < first_new; ++v) index.add(v);
   const auto vertex_at = [&](const Vec3& p, double tolerance) {
     const std::uint32_t known = index.find(p, tolerance);
     if (known != PointIndex::kNone) return known;
-    const auto id = static_cast<std::uint32_t>(complex.vertices.size());
-    complex.vertices.push_back(p);
+    const std::uint32_t id = complex.add_vertex(p, tolerance);
     index.add(id);
     return id;
   };
@@ -305,23 +319,30 @@ Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& gr
   std::sort(drawing.points.begin(), drawing.points.end());
   drawing.points.erase(std::unique(drawing.points.begin(), drawing.points.end()), drawing.points.end());
 
-  // New vertices may lie on other lines, and a line bent to a vertex may cross another: until nothing changes.
-  for (int round = 0; round < 8; ++round) {
-    std::map<Ends, Stops> forced;
-    if (round > 0) {
-      bool any = false;
-      for (const auto& found : crossings_by_group(complex, groups, drawing.lines))
-        for (const Crossing& c : found) {
-          const std::uint32_t v = vertex_at(c.place, c.tolerance);
-          for (const Ends& e : {c.first, c.second})
-            if (v != e[0] && v != e[1]) {
-              forced[e].push_back(v);
-              any = true;
-            }
-        }
-      if (!any) break;
-    }
+  std::map<Ends, Stops> forced;
+  // New vertices may lie on other lines, and a line bent to a vertex may cross another: until nothing changes. Exact
+  // models settle in one or two rounds.
+  const std::size_t too_many = 1000 + 3 * complex.vertices.size();
+  constexpr int kRounds = 8;
+  for (int round = 0;; ++round) {
     split(complex, drawing.lines, forced, 0);
+    forced.clear();
+    const auto found = crossings_by_group(complex, groups, drawing.lines);
+    std::size_t count = 0;
+    for (const auto& some : found) count += some.size();
+    if (count == 0) break;
+    if (round == kRounds || complex.vertices.size() > too_many || (round > 0 && count > drawing.lines.size())) {
+      drawing.settled = false;
+      drop_crossing(drawing.lines, found);
+      break;
+    }
+    for (const auto& some : found)
+      for (const Crossing& c : some) {
+        const std::uint32_t v = vertex_at(c.place, c.tolerance);
+        for (const Ends& e : {c.first, c.second})
+          if (v != e[0] && v != e[1]) forced[e].push_back(v);
+      }
+    if (forced.empty()) break;
   }
   return drawing;
 }

@@ -14,6 +14,7 @@ namespace clerestory {
 struct Drawing {
   std::vector<Line> lines;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> points;  ///< group, vertex
+  bool settled = true;  ///< false: lines still cross after all, because the model is less exact than its tolerance
 };
 
 /// Draws the edges of all faces and the lines along which faces of different planes touch or cross, then splits every

@@ -23,7 +23,7 @@ double depth(const std::array<Point2, 3>& t, const Point2& p) {
 }  // namespace
 
 Covering::Covering(const FaceComplex& complex, const PlaneGroup& group, std::span<const Material> materials)
-    : materials_(materials) {
+    : contact_(complex.allowed.contact), materials_(materials) {
   std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, double> area;
   std::vector<Box> boxes;
   for (const std::uint32_t f : group.faces) {
@@ -68,10 +68,10 @@ std::optional<Covering::Found> Covering::at(const Point2& p, double reach) const
   std::vector<const Piece*> covering;
   if (!tree_) {
     covering.push_back(&pieces_.front());
-    if (depth(covering.front()->corner, p) < -kContact) covering.clear();
+    if (depth(covering.front()->corner, p) < -contact_) covering.clear();
   } else {
     // In a cell narrower than the tolerance a point may fall beside the faces that meant to cover it.
-    for (const double slack : {0.0, reach < kContact ? kContact : 0.0}) {
+    for (const double slack : {0.0, reach < contact_ ? contact_ : 0.0}) {
       if (!covering.empty()) break;
       Box box;
       box.add(Vec3{p.x, p.y, 0});

@@ -39,6 +39,7 @@ class Covering {
   };
   const Piece* winner(const std::vector<const Piece*>& covering, bool above, bool by_size_only) const;
 
+  double contact_;
   std::vector<Piece> pieces_;
   std::optional<BoxTree> tree_;
   std::span<const Material> materials_;

@@ -108,7 +108,8 @@ void straighten(const FaceComplex& complex, Graph& graph) {
     if (graph.edges[n].groups != graph.edges[e].groups) return kStop;
     const Vec3 a = complex.vertices[other_end(e, v)], b = complex.vertices[v], c = complex.vertices[other_end(n, v)];
     if (dot(b - a, c - b) <= 0) return kStop;
-    const double tolerance = std::min(kContact, kLocalShare * std::min(length(b - a), length(c - b)));
+    const double tolerance =
+        std::min(complex.allowed.contact, complex.allowed.local_share * std::min(length(b - a), length(c - b)));
     return distance_to_line(b, a, c) <= tolerance ? n : kStop;
   };
 
@@ -128,10 +129,10 @@ void straighten(const FaceComplex& complex, Graph& graph) {
       const std::uint32_t w = other_end(n, v);
       passed.push_back(v);
       // The whole of what is passed must stay on the line.
-      const bool straight =
-          w != start && std::all_of(passed.begin(), passed.end(), [&](std::uint32_t p) {
-            return distance_to_line(complex.vertices[p], complex.vertices[start], complex.vertices[w]) <= kContact;
-          });
+      const bool straight = w != start && std::all_of(passed.begin(), passed.end(), [&](std::uint32_t p) {
+                              return distance_to_line(complex.vertices[p], complex.vertices[start],
+                                                      complex.vertices[w]) <= complex.allowed.contact;
+                            });
       if (!straight) finish(v);
       edge.crosses_a_region |= graph.edges[n].crosses_a_region;
       done[n] = true;
@@ -173,7 +174,7 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
     bool crossed = false;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto base = static_cast<std::uint32_t>(complex.vertices.size());
-      for (const Point2& p : seen[g].crossings) complex.vertices.push_back(groups[g].plane.lift(p));
+      for (const Point2& p : seen[g].crossings) complex.add_vertex(groups[g].plane.lift(p), complex.allowed.contact);
       crossed |= !seen[g].crossings.empty();
       for (Use u : seen[g].uses) {
         if (u.a >= kCrossing) u.a = base + (u.a - kCrossing);

@@ -21,15 +21,44 @@ FaceShape shape_of(const FaceComplex& complex, const Face& face) {
   return {(a + b + c) / 3, normalized(n), length(n) / 2, longest, length(n) / longest};
 }
 
-bool lies_in(const Plane& plane, const FaceComplex& complex, const Face& face, const FaceShape& shape) {
-  // A plane is known less well far from the face that gave it.
-  const double tolerance = std::min(kContact, kLocalShare * shape.longest);
+bool lies_in(const Plane& plane, const FaceComplex& complex, const Face& face, const FaceShape& shape, double drift) {
+  const double tolerance = std::min(complex.allowed.contact, complex.allowed.local_share * shape.longest);
   for (const std::uint32_t v : face.corner) {
     const Vec3& p = complex.vertices[v];
-    if (std::abs(plane.distance(p)) > tolerance + 5e-6 * length(p - plane.origin)) return false;
+    if (std::abs(plane.distance(p)) > tolerance + drift * length(p - plane.origin)) return false;
   }
   // The corners' rounding turns the normal of a low triangle by about tolerance / height.
   return length(cross(plane.n, shape.normal)) <= 0.01 + 2 * tolerance / shape.height;
+}
+
+/// The plane nearest to the corners of some faces, by least squares weighted with their area: z = c0 + c1 x + c2 y in
+/// the frame of the plane that is about right.
+Plane fit(const Plane& about, const FaceComplex& complex, const std::vector<FaceShape>& shapes,
+          const std::vector<std::uint32_t>& faces) {
+  Vec3 centre;
+  double weight = 0;
+  for (const std::uint32_t f : faces) {
+    centre += shapes[f].centre * shapes[f].area;
+    weight += shapes[f].area;
+  }
+  centre = centre / weight;
+  double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, z0 = 0;
+  for (const std::uint32_t f : faces)
+    for (const std::uint32_t v : complex.faces[f].corner) {
+      const Vec3 d = complex.vertices[v] - centre;
+      const double w = shapes[f].area, x = dot(d, about.t), y = dot(d, about.b), z = dot(d, about.n);
+      xx += w * x * x;
+      xy += w * x * y;
+      yy += w * y * y;
+      xz += w * x * z;
+      yz += w * y * z;
+      z0 += w * z;  // x and y have no mean: centroids are at the mean of their corners
+    }
+  const double det = xx * yy - xy * xy;
+  if (!(det > 1e-12 * xx * yy)) return about;
+  const double c1 = (xz * yy - yz * xy) / det, c2 = (yz * xx - xz * xy) / det;
+  const Frame frame(normalized(about.n - about.t * c1 - about.b * c2));
+  return {centre + about.n * (z0 / (3 * weight)), frame.t, frame.b, frame.n};
 }
 
 }  // namespace
@@ -41,7 +70,7 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
   for (std::size_t f = 0; f < count; ++f) {
     shapes[f] = shape_of(complex, complex.faces[f]);
     for (const std::uint32_t v : complex.faces[f].corner) boxes[f].add(complex.vertices[v]);
-    boxes[f] = boxes[f].grown(std::min(kContact, kLocalShare * shapes[f].longest));
+    boxes[f] = boxes[f].grown(std::min(complex.allowed.contact, complex.allowed.local_share * shapes[f].longest));
   }
   const BoxTree tree(boxes);
 
@@ -53,17 +82,32 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
 
   std::vector<PlaneGroup> groups;
   std::vector<bool> placed(count);
+  const auto grow = [&](std::uint32_t seed, const Plane& plane, double drift) {
+    std::vector<std::uint32_t> faces{seed};
+    placed[seed] = true;
+    for (std::size_t k = 0; k < faces.size(); ++k)
+      tree.visit(boxes[faces[k]], [&](std::uint32_t f) {
+        if (placed[f] || !lies_in(plane, complex, complex.faces[f], shapes[f], drift)) return;
+        placed[f] = true;
+        faces.push_back(f);
+      });
+    return faces;
+  };
   for (const std::uint32_t seed : by_area) {
     if (placed[seed]) continue;
     const Frame frame(shapes[seed].normal);
-    PlaneGroup group{{shapes[seed].centre, frame.t, frame.b, frame.n}, {seed}};
-    placed[seed] = true;
-    for (std::size_t k = 0; k < group.faces.size(); ++k) {
-      tree.visit(boxes[group.faces[k]], [&](std::uint32_t f) {
-        if (placed[f] || !lies_in(group.plane, complex, complex.faces[f], shapes[f])) return;
-        placed[f] = true;
-        group.faces.push_back(f);
-      });
+    PlaneGroup group{{shapes[seed].centre, frame.t, frame.b, frame.n}, {}};
+    // What lies in the seed's plane by a tolerance that grows with the distance, as the seed's own rounding does ...
+    constexpr double kDrift = 5e-6;
+    group.faces = grow(seed, group.plane, kDrift);
+    const Plane fitted = fit(group.plane, complex, shapes, group.faces);
+    const auto fits = [&](std::uint32_t f) { return lies_in(fitted, complex, complex.faces[f], shapes[f], 0); };
+    // ... if one plane does for all of it; else what lies in the seed's plane strictly.
+    if (std::all_of(group.faces.begin(), group.faces.end(), fits)) {
+      group.plane = fitted;
+    } else {
+      for (const std::uint32_t f : group.faces) placed[f] = false;
+      group.faces = grow(seed, group.plane, 0);
     }
     std::sort(group.faces.begin(), group.faces.end());
     groups.push_back(std::move(group));

@@ -1,6 +1,7 @@
 #pragma once
 // The surfaces between the steps of meshing: triangles on shared vertices, planes that hold them, lines that part them.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -10,12 +11,19 @@
 
 namespace clerestory {
 
-/// Tolerances, in the unit of the working frame: the model's diagonal is 1 there, its centre is the origin.
-/// Coordinates of single precision files lie within 1e-7 of where they should.
-inline constexpr double kWeld = 2e-7;     ///< points closer than this are one point
-inline constexpr double kContact = 4e-7;  ///< a point closer than this to a line or a plane lies on it
-/// No tolerance is larger than this share of the faces it is used on, so that fine detail of a large model survives.
-inline constexpr double kLocalShare = 0.01;
+/// Lengths below which differences are taken for rounding, in the unit of the working frame: there the model's diagonal
+/// is 1 and its centre is the origin.
+struct Tolerance {
+  double contact;  ///< a point closer than this to a line or a plane lies on it
+  double
+      local_share;  ///< no tolerance is more than this share of the faces it is used on, so that fine detail survives
+};
+/// Coordinates of single precision files lie within 1e-7 of where they should. Where a model turns out to be less exact
+/// (rounded to millimetres, say), it is tried again with the next.
+inline constexpr std::array kTolerances{Tolerance{4e-7, 0.01}, Tolerance{4e-6, 0.1}, Tolerance{2e-5, 1},
+                                        Tolerance{1e-4, 1}};
+/// Points closer than this share of `contact` are one point.
+inline constexpr double kWeldShare = 0.5;
 
 struct Face {
   std::array<std::uint32_t, 3> corner;  ///< counter-clockwise around the front
@@ -27,8 +35,18 @@ struct Face {
 struct FaceComplex {
   Vec3 origin;      ///< of the working frame, in the scene's frame [m]
   double size = 1;  ///< of the unit of the working frame [m]
+  Tolerance allowed = kTolerances[0];
   std::vector<Vec3> vertices;
+  std::vector<double>
+      tolerance;  ///< by vertex: `allowed.contact`, less where small faces meet; a line takes its coarser end's
   std::vector<Face> faces;
+
+  std::uint32_t add_vertex(const Vec3& p, double tolerance_there) {
+    vertices.push_back(p);
+    tolerance.push_back(tolerance_there);
+    return static_cast<std::uint32_t>(vertices.size()) - 1;
+  }
+  double line_tolerance(std::uint32_t a, std::uint32_t b) const { return std::max(tolerance[a], tolerance[b]); }
 };
 
 struct Point2 {

@@ -332,7 +332,9 @@ TEST(BuildPatches, KeepsTheWindingOfEachFaceOfAPlane) {
   for (std::size_t i = 0; i < p.patch_count(); ++i) {
     double x = p.origin.x;
     for (const VertexId v : p.corners[p.triangle[i]]) x += p.vertices[v].x / 3;
-    if (p.side[i] == kFront) EXPECT_EQ(p.normal[i].z > 0, x < 1);
+    if (p.side[i] == kFront) {
+      EXPECT_EQ(p.normal[i].z > 0, x < 1);
+    }
   }
 }
 

@@ -1,0 +1,322 @@
+// clerestory solve, from the outside: files, exit codes, promises.
+
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <signal.h>
+
+#include "solver/model/units.h"
+#include "tests/support/box_scene.h"
+#include "tests/support/result_file.h"
+#include "tests/support/run_program.h"
+
+namespace clerestory {
+namespace {
+
+using Json = nlohmann::json;
+
+ProgramRun solve(const std::string& scene, const std::string& output, std::vector<std::string> options = {}) {
+  options.insert(options.begin(), {"solve", scene, "-o", output});
+  return run_program(options);
+}
+
+void expect_all_finite(const std::map<std::string, ResultArray>& arrays) {
+  for (const auto& [name, array] : arrays)
+    for (const double value : array.values) ASSERT_TRUE(std::isfinite(value)) << name;
+}
+
+TEST(Solve, TheResultHasEveryArrayWithItsMeaning) {
+  const TempFolder folder;
+  const ProgramRun run = solve(shipped_scene("office.json"), folder / "out.vtp", {"--accuracy", "draft"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const ResultFile result = read_result(folder / "out.vtp");
+  for (const char* name : {"irradiance", "illuminance", "radiosity", "luminance", "daylight_factor"}) {
+    ASSERT_EQ(result.of_cells.count(name), 1u) << name;
+    ASSERT_EQ(result.of_points.count(name), 1u) << name;
+    EXPECT_EQ(result.of_cells.at(name).values.size(), result.triangles.size()) << name;
+    EXPECT_EQ(result.of_points.at(name).values.size(), result.points.size()) << name;
+  }
+  for (const char* name : {"material", "surface", "level", "area"}) ASSERT_EQ(result.of_cells.count(name), 1u) << name;
+  expect_all_finite(result.of_cells);
+  expect_all_finite(result.of_points);
+
+  const auto& cells = result.of_cells;
+  for (std::size_t i = 0; i < result.triangles.size(); ++i) {
+    const double E = cells.at("irradiance").values[i], lux = cells.at("illuminance").values[i];
+    EXPECT_GE(E, 0);
+    EXPECT_NEAR(lux, kWhiteEfficacy * E, 1e-5 * lux);
+    EXPECT_NEAR(cells.at("daylight_factor").values[i], 100 * lux / 10'000, 1e-5 * lux);
+    const auto& [a, b, c] = result.triangles[i];
+    const Vec3 normal = cross(result.points[b] - result.points[a], result.points[c] - result.points[a]);
+    EXPECT_NEAR(length(normal) / 2, cells.at("area").values[i], 1e-5 * length(normal));
+    EXPECT_LT(cells.at("material").values[i], static_cast<double>(result.texts.at("material_names").size()));
+    EXPECT_LT(cells.at("surface").values[i], static_cast<double>(result.texts.at("surface_names").size()));
+  }
+  EXPECT_EQ(result.texts.at("version"), std::vector<std::string>{"0.1.0"});
+  EXPECT_EQ(result.texts.at("settings.method"), std::vector<std::string>{"progressive"});
+  EXPECT_EQ(result.texts.at("settings.accuracy"), std::vector<std::string>{"draft"});
+  EXPECT_EQ(result.numbers.at("counts.elements").values, std::vector<double>{double(result.triangles.size())});
+}
+
+TEST(Solve, OnlyTheDaylitSceneHasDaylightFactors) {
+  const TempFolder folder;
+  ASSERT_EQ(solve(shipped_scene("cornell_box.json"), folder / "out.vtp", {"--accuracy", "draft"}).exit_code, 0);
+  const ResultFile result = read_result(folder / "out.vtp");
+  EXPECT_EQ(result.of_cells.count("daylight_factor"), 0u);
+  EXPECT_EQ(result.of_cells.at("irradiance").components, 3);
+  EXPECT_EQ(result.of_points.at("radiosity").components, 3);
+  EXPECT_EQ(result.of_points.at("luminance").components, 1);
+}
+
+TEST(Solve, TheReportHasEveryField) {
+  const TempFolder folder;
+  const ProgramRun run = solve(shipped_scene("office.json"), folder / "out.vtp",
+                               {"--accuracy", "draft", "--report", folder / "report.json", "--seed", "7"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json report = Json::parse(read_text(folder / "report.json"));
+  const auto has = [&](const char* pointer) { return report.contains(Json::json_pointer(pointer)); };
+  for (const char* field : {"/version",
+                            "/input",
+                            "/method",
+                            "/settings/accuracy",
+                            "/settings/threads",
+                            "/counts/triangles",
+                            "/counts/elements",
+                            "/counts/clusters",
+                            "/counts/links",
+                            "/counts/rays",
+                            "/seconds/read",
+                            "/seconds/mesh",
+                            "/seconds/build",
+                            "/seconds/direct",
+                            "/seconds/refine",
+                            "/seconds/gather",
+                            "/seconds/reconstruct",
+                            "/seconds/write",
+                            "/seconds/total",
+                            "/peak_memory_bytes",
+                            "/iterations",
+                            "/residual",
+                            "/energy/emitted",
+                            "/energy/absorbed",
+                            "/energy/escaped",
+                            "/energy/imbalance",
+                            "/error/rms_relative",
+                            "/error/p95_relative",
+                            "/error/samples",
+                            "/error/confidence",
+                            "/error_sensors/rms_relative",
+                            "/repairs/t_junctions",
+                            "/warnings",
+                            "/left_out",
+                            "/stop"})
+    EXPECT_TRUE(has(field)) << field;
+  EXPECT_EQ(report["settings"]["seed"], 7);
+  EXPECT_EQ(report["stop"], "converged");
+  EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
+  EXPECT_GT(report["counts"]["rays"], 10'000);
+  const double emitted = report["energy"]["emitted"];
+  EXPECT_NEAR(report["energy"]["absorbed"].get<double>() + report["energy"]["escaped"].get<double>(), emitted,
+              0.05 * emitted);
+}
+
+TEST(Solve, ThreadsNeverChangeABit) {
+  for (const char* method : {"progressive", "gauss-seidel", "path"}) {
+    SCOPED_TRACE(method);
+    const TempFolder folder;
+    for (const char* threads : {"1", "2", "3"}) {
+      const ProgramRun run = solve(shipped_scene("cornell_box.json"), folder / (std::string(threads) + ".vtp"),
+                                   {"--threads", threads, "--method", method, "--max-element", "0.06", "--sensors-out",
+                                    folder / (std::string(threads) + ".csv")});
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+    }
+    EXPECT_GT(read_text(folder / "1.vtp").size(), 10'000u);
+    for (const char* other : {"2", "3"}) {
+      EXPECT_TRUE(read_text(folder / "1.vtp") == read_text(folder / (std::string(other) + ".vtp"))) << other;
+      EXPECT_TRUE(read_text(folder / "1.csv") == read_text(folder / (std::string(other) + ".csv"))) << other;
+    }
+  }
+}
+
+TEST(Solve, AnotherSeedGivesAnotherEstimateOfTheSameLight) {
+  const TempFolder folder;
+  for (const char* seed : {"1", "2"})
+    ASSERT_EQ(solve(shipped_scene("cornell_box.json"), folder / (std::string(seed) + ".vtp"),
+                    {"--accuracy", "draft", "--seed", seed})
+                  .exit_code,
+              0);
+  const auto a = read_result(folder / "1.vtp").of_cells.at("illuminance").values;
+  const auto b = read_result(folder / "2.vtp").of_cells.at("illuminance").values;
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_NE(a, b);
+  double sum_a = 0, sum_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum_a += a[i], sum_b += b[i];
+  EXPECT_NEAR(sum_a / sum_b, 1, 0.02);
+}
+
+TEST(Solve, SensorsComeBackRowByRow) {
+  const TempFolder folder;
+  const std::string points = folder.write("points.csv",
+                                          "x,y,z,nx,ny,nz\n2,1.5,1.25,0,0,1\n1,1,0.5,0,0,-1\n"
+                                          "0.10000000000000001,0.2,0.30000000000000004,1,0,0\n");
+  const BoxScene box{.rho = 0.5, .M = 10};
+  const ProgramRun run = solve(box.write(folder), folder / "out.vtp",
+                               {"--sensors", points, "--sensors-out", folder / "out.csv", "--max-element", "1"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::istringstream csv(read_text(folder / "out.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "x,y,z,nx,ny,nz,illuminance,irradiance_0");
+  std::vector<std::string> rows;
+  while (std::getline(csv, line)) rows.push_back(line);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_TRUE(rows[0].starts_with("2,1.5,1.25,0,0,1,")) << rows[0];
+  EXPECT_TRUE(rows[1].starts_with("1,1,0.5,0,0,-1,")) << rows[1];
+  EXPECT_TRUE(rows[2].starts_with("0.1,0.2,0.30000000000000004,1,0,0,")) << rows[2];
+  for (const std::string& row : rows) {
+    const double E = std::stod(row.substr(row.rfind(',') + 1));
+    EXPECT_NEAR(E, box.radiosity(), 0.01 * box.radiosity()) << "the furnace shines alike from everywhere";
+  }
+}
+
+TEST(Solve, GreyIsOneChannelOfTheSameLight) {
+  const TempFolder folder;
+  const std::string scene = shipped_scene("cornell_box.json");
+  ASSERT_EQ(solve(scene, folder / "colour.vtp", {"--accuracy", "draft"}).exit_code, 0);
+  ASSERT_EQ(solve(scene, folder / "grey.vtp", {"--accuracy", "draft", "--grey"}).exit_code, 0);
+  ASSERT_EQ(solve(scene, folder / "one.vtp", {"--accuracy", "draft", "--channels", "1"}).exit_code, 0);
+  const ResultFile grey = read_result(folder / "grey.vtp");
+  EXPECT_EQ(grey.of_cells.at("irradiance").components, 1);
+  EXPECT_EQ(read_text(folder / "grey.vtp"), read_text(folder / "one.vtp"));
+  const auto& colour = read_result(folder / "colour.vtp").of_cells.at("illuminance").values;
+  double a = 0, b = 0;
+  for (const double value : colour) a += value;
+  for (const double value : grey.of_cells.at("illuminance").values) b += value;
+  EXPECT_NEAR(b / a, 1, 0.05);  // the product of mean reflectances is not the mean of products
+}
+
+TEST(Solve, TheCommandLineWinsOverTheSceneFile) {
+  const TempFolder folder;
+  BoxScene{}.write(folder);
+  const std::string scene =
+      folder.write("settings.json",
+                   R"({ "geometry": [{ "file": "room.obj" }], "materials": { "wall": { "exitance": 1, "sides": 1 } },
+                        "solver": { "method": "jacobi", "accuracy": "draft", "max_element": 1.5, "seed": 5 } })");
+  ASSERT_EQ(solve(scene, folder / "file.vtp").exit_code, 0);
+  const ResultFile by_file = read_result(folder / "file.vtp");
+  EXPECT_EQ(by_file.texts.at("method"), std::vector<std::string>{"jacobi"});
+  EXPECT_EQ(by_file.numbers.at("settings.max_element").values, std::vector<double>{1.5});
+  EXPECT_EQ(by_file.numbers.at("settings.seed").values, std::vector<double>{5});
+  ASSERT_EQ(solve(scene, folder / "line.vtp", {"--method", "gauss-seidel", "--max-element", "1"}).exit_code, 0);
+  const ResultFile by_line = read_result(folder / "line.vtp");
+  EXPECT_EQ(by_line.texts.at("method"), std::vector<std::string>{"gauss-seidel"});
+  EXPECT_EQ(by_line.numbers.at("settings.max_element").values, std::vector<double>{1});
+  EXPECT_EQ(by_line.texts.at("settings.accuracy"), std::vector<std::string>{"draft"});
+}
+
+TEST(Solve, QuietSaysNothingAndTheLogSaysAll) {
+  const TempFolder folder;
+  const std::string scene = BoxScene{}.write(folder);
+  const ProgramRun quiet =
+      solve(scene, folder / "out.vtp", {"--quiet", "--max-element", "1", "--log", folder / "run.log"});
+  EXPECT_EQ(quiet.exit_code, 0);
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_NE(read_text(folder / "run.log").find("energy"), std::string::npos);
+  const ProgramRun normal = solve(scene, folder / "out.vtp", {"--max-element", "1"});
+  for (const char* word : {"elements", "energy", "error", "time", "out.vtp"})
+    EXPECT_NE(normal.out.find(word), std::string::npos) << word;
+}
+
+/// Starts a solve that would take minutes, and waits until it is well under way.
+void start_long_run_then(Program& program, int signal_number) {
+  for (int i = 0; i < 600 && program.running() && program.said().find('%') == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  ASSERT_TRUE(program.running()) << program.said();
+  program.signal(signal_number);
+}
+
+std::vector<std::string> long_run(const std::string& output) {
+  return {
+      "solve", shipped_scene("office.json"), "-o", output, "--method", "path", "--accuracy", "fine", "--max-element",
+      "0.1"};
+}
+
+TEST(Interrupt, CtrlCWritesWhatThereIsAndExitsFive) {
+  const TempFolder folder;
+  Program program(long_run(folder / "out.vtp"));
+  start_long_run_then(program, SIGINT);
+  const ProgramRun run = program.wait();
+  EXPECT_EQ(run.exit_code, 5) << run.err;
+  const ResultFile result = read_result(folder / "out.vtp");
+  EXPECT_GT(result.triangles.size(), 10'000u);
+  expect_all_finite(result.of_cells);
+  expect_all_finite(result.of_points);
+  EXPECT_EQ(result.texts.at("stop"), std::vector<std::string>{"interrupted"});
+  EXPECT_EQ(folder.listing(), "out.sensors.csv out.vtp ");
+}
+
+TEST(Interrupt, AKilledRunLeavesNoHalfFileAndTheOldResultAlone) {
+  const TempFolder folder;
+  folder.write("out.vtp", "the result of yesterday");
+  Program program(long_run(folder / "out.vtp"));
+  start_long_run_then(program, SIGKILL);
+  EXPECT_EQ(program.wait().exit_code, 128 + SIGKILL);
+  EXPECT_EQ(read_text(folder / "out.vtp"), "the result of yesterday");
+  EXPECT_EQ(folder.listing(), "out.vtp ");
+}
+
+TEST(TimeLimit, ReachedBeforeTheEndIsExitFourWithAResult) {
+  const TempFolder folder;
+  auto arguments = long_run(folder / "out.vtp");
+  arguments.insert(arguments.end(), {"--time-limit", "2"});
+  const ProgramRun run = run_program(arguments);
+  EXPECT_EQ(run.exit_code, 4) << run.err;
+  EXPECT_NE(run.err.find("time limit of 2"), std::string::npos) << run.err;
+  EXPECT_EQ(read_result(folder / "out.vtp").texts.at("stop"), std::vector<std::string>{"time-limit"});
+}
+
+TEST(TargetError, IsReachedByRefiningOrSaidToBeMissed) {
+  const TempFolder folder;
+  const ProgramRun easy =
+      solve(shipped_scene("cornell_box.json"), folder / "out.vtp",
+            {"--grey", "--accuracy", "draft", "--target-error", "0.2", "--report", folder / "r.json"});
+  EXPECT_EQ(easy.exit_code, 0) << easy.err;
+  EXPECT_LE(Json::parse(read_text(folder / "r.json"))["error"]["rms_relative"], 0.2);
+  const ProgramRun hard = solve(shipped_scene("cornell_box.json"), folder / "out.vtp",
+                                {"--grey", "--accuracy", "draft", "--target-error", "1e-9", "--time-limit", "3"});
+  EXPECT_EQ(hard.exit_code, 4) << hard.err;
+  EXPECT_GT(read_result(folder / "out.vtp").triangles.size(), 0u);
+}
+
+TEST(Check, TellsWhatIsThereAndSolvesNothing) {
+  const ProgramRun run = run_program({"check", shipped_scene("house.json")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* word : {"objects", "extent   15.0 x 13.0 x 6.20 m", "material 'parquet': reflectance 0.350",
+                           "CIE overcast sky, 10000 lx", "1500 lm", "glazing"})
+    EXPECT_NE(run.out.find(word), std::string::npos) << word << " is not in\n" << run.out;
+}
+
+TEST(Mesh, WritesPatchesWithTheirQuality) {
+  const TempFolder folder;
+  const ProgramRun run =
+      run_program({"mesh", shipped_scene("house.json"), "-o", folder / "m.vtp", "--max-element", "0.5"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const ResultFile patches = read_result(folder / "m.vtp");
+  for (const char* name : {"min_angle", "aspect", "longest_edge", "area", "material", "surface"})
+    ASSERT_EQ(patches.of_cells.count(name), 1u) << name;
+  for (std::size_t i = 0; i < patches.triangles.size(); ++i) {
+    EXPECT_LE(patches.of_cells.at("longest_edge").values[i], 0.5 * (1 + 1e-6));
+    EXPECT_LE(patches.of_cells.at("min_angle").values[i], 60 + 1e-3);
+    EXPECT_GE(patches.of_cells.at("aspect").values[i], 2 / std::sqrt(3) - 1e-3);
+  }
+  // The meshes of patches share their vertices, so points are fewer than half of the triangles' corners.
+  EXPECT_LT(patches.points.size(), 3 * patches.triangles.size() / 2);
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -1,0 +1,116 @@
+// The #include lines against DESIGN.md, section 2: who may include whom, and one door for each library.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace clerestory {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Include {
+  std::string file;    ///< relative to the root
+  std::string header;  ///< as written
+  bool own = false;    ///< in quotes
+};
+
+std::vector<Include> all_includes() {
+  const fs::path root = CLERESTORY_SOURCE_DIR;
+  const std::regex line_of_include(R"re(\s*#\s*include\s*([<"])([^>"]+)[>"].*)re");
+  std::vector<Include> includes;
+  for (const char* folder : {"solver", "meshing", "io", "apps"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      std::ifstream in(entry.path());
+      for (std::string line; std::getline(in, line);) {
+        std::smatch part;
+        if (std::regex_match(line, part, line_of_include))
+          includes.push_back({fs::relative(entry.path(), root).generic_string(), part[2], part[1] == "\""});
+      }
+    }
+  }
+  return includes;
+}
+
+bool starts_with_any(const std::string& text, const std::vector<std::string>& beginnings) {
+  for (const std::string& b : beginnings)
+    if (text.starts_with(b)) return true;
+  return false;
+}
+
+/// Folders whose headers a file may include.
+std::vector<std::string> allowed_layers(const std::string& file) {
+  if (file.starts_with("solver/model/")) return {"solver/model/"};
+  if (file.starts_with("solver/")) return {"solver/"};
+  if (file.starts_with("meshing/")) return {"meshing/", "solver/model/"};
+  if (file.starts_with("io/")) return {"io/", "solver/model/"};
+  return {"apps/", "io/", "meshing/", "solver/"};
+}
+
+struct Library {
+  std::string name;
+  std::regex header;
+  std::vector<std::string> doors;  ///< files that may include it begin with one of these
+  bool in_headers = false;         ///< may our headers show it
+};
+
+const std::vector<Library>& libraries() {
+  static const std::vector<Library> all = {
+      {"Embree", std::regex("embree.*"), {"solver/visibility/"}},
+      {"CGAL", std::regex("CGAL/.*"), {"meshing/"}, true},  // headers of kernels inside meshing/ only
+      {"OpenMesh", std::regex("OpenMesh/.*"), {"meshing/"}},
+      {"VTK", std::regex("vtk.*"), {"io/"}},
+      {"Assimp", std::regex("assimp/.*"), {"io/"}},
+      {"JSON", std::regex("nlohmann/.*"), {"io/", "apps/"}, true},
+      {"TBB", std::regex("(tbb|oneapi)/.*"), {"solver/model/parallel.cpp"}},
+      {"CLI11", std::regex("CLI/.*"), {"apps/"}},
+  };
+  return all;
+}
+
+bool is_standard(const std::string& header) {
+  // The C and C++ libraries have no folder but sys/, and POSIX is used in apps/ and io/.
+  static const std::regex standard("[a-z_0-9]+|[a-z_0-9]+\\.h|sys/[a-z]+\\.h");
+  return std::regex_match(header, standard);
+}
+
+TEST(Layers, OwnHeadersAreIncludedFromTheRootAndDownwardsOnly) {
+  const auto includes = all_includes();
+  ASSERT_GT(includes.size(), 200u) << "the sources were not found";
+  for (const Include& i : includes) {
+    if (!i.own) continue;
+    EXPECT_TRUE(starts_with_any(i.header, allowed_layers(i.file))) << i.file << " includes " << i.header;
+  }
+}
+
+TEST(Layers, EveryLibraryIsIncludedAtItsDoorOnly) {
+  for (const Include& i : all_includes()) {
+    if (i.own || is_standard(i.header)) continue;
+    const auto& all = libraries();
+    const auto library =
+        std::find_if(all.begin(), all.end(), [&](const Library& l) { return std::regex_match(i.header, l.header); });
+    ASSERT_NE(library, all.end()) << i.file << " includes <" << i.header << ">, which has no door";
+    EXPECT_TRUE(starts_with_any(i.file, library->doors)) << i.file << " includes " << library->name;
+    EXPECT_TRUE(library->in_headers || !i.file.ends_with(".h")) << i.file << " shows " << library->name;
+  }
+}
+
+TEST(Layers, HeadersForUsersOfTheLibraryShowNoLibrary) {
+  // They must compile without CGAL, VTK, JSON and the rest.
+  const std::vector<std::string> doors = {"solver/",         "meshing/build_patches.h", "meshing/make_lightmap.h",
+                                          "io/read_scene.h", "io/read_sensors.h",       "io/write_result.h",
+                                          "io/run_report.h", "io/write_sensors.h"};
+  for (const Include& i : all_includes()) {
+    if (i.own || !i.file.ends_with(".h") || !starts_with_any(i.file, doors)) continue;
+    EXPECT_TRUE(is_standard(i.header)) << i.file << " includes <" << i.header << ">";
+  }
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -1,0 +1,43 @@
+#pragma once
+// Runs the program as a user would, and holds on to what it said.
+
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "tests/support/temp_folder.h"
+
+namespace clerestory {
+
+struct ProgramRun {
+  int exit_code = -1;  ///< 128 + signal when it was killed
+  std::string out, err;
+};
+
+/// A run under way.
+class Program {
+ public:
+  explicit Program(const std::vector<std::string>& arguments);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void signal(int number) const;
+  /// What it has said on standard error so far.
+  std::string said() const { return read_text(folder_ / "err"); }
+  bool running();
+  ProgramRun wait();
+
+ private:
+  TempFolder folder_;
+  pid_t process_ = -1;
+  int status_ = 0;
+};
+
+ProgramRun run_program(const std::vector<std::string>& arguments);
+
+/// A scene shipped with the program.
+std::string shipped_scene(const std::string& name);
+
+}  // namespace clerestory

@@ -9,6 +9,7 @@
 #include <assimp/scene.h>
 
 #include "io/formats/add_mesh.h"
+#include "io/formats/ifc_unit.h"
 #include "io/formats/model_bytes.h"
 #include "io/formats/run_apart.h"
 #include "io/input_file.h"
@@ -32,17 +33,27 @@ double as_written(float x) {
   return value;
 }
 
-/// Assimp turns and scales by float matrices; what a quarter turn leaves beside its ones is rounding.
 Affine to_affine(const aiMatrix4x4& m) {
-  double largest = 0;
-  for (unsigned r = 0; r < 3; ++r) {
-    for (unsigned c = 0; c < 3; ++c) largest = std::max(largest, std::abs(double{m[r][c]}));
-  }
-  const auto clean = [&](float x) { return std::abs(double{x}) < 3e-7 * largest ? 0.0 : as_written(x); };
   Affine a;
-  for (unsigned r = 0; r < 3; ++r) a.A[r] = {clean(m[r][0]), clean(m[r][1]), clean(m[r][2])};
+  for (unsigned r = 0; r < 3; ++r) a.A[r] = {as_written(m[r][0]), as_written(m[r][1]), as_written(m[r][2])};
   a.b = {as_written(m[0][3]), as_written(m[1][3]), as_written(m[2][3])};
   return a;
+}
+
+/// What float quarter turns leave beside their ones is rounding.
+Affine without_rounding(Affine a) {
+  double largest = 0;
+  for (const Vec3& row : a.A) largest = std::max({largest, std::abs(row.x), std::abs(row.y), std::abs(row.z)});
+  const auto clean = [&](double x) { return std::abs(x) < 3e-7 * largest ? 0.0 : x; };
+  for (Vec3& row : a.A) row = {clean(row.x), clean(row.y), clean(row.z)};
+  return a;
+}
+
+/// Assimp turns the z-up metres of an IFC site into y-up ones by a float matrix whose cosine of 90 degrees is -4e-8:
+/// metres, for a site that is georeferenced. This turns them back by the same angle.
+Affine back_to_z_up() {
+  const double c = std::cos(static_cast<float>(-std::numbers::pi / 2));
+  return {{Vec3{1, 0, 0}, Vec3{0, c, -1}, Vec3{0, 1, c}}, {}};
 }
 
 /// Names that Assimp makes up are no names; parts of an IFC product are known by the product.
@@ -102,10 +113,13 @@ double number_of(const aiMetadata* meta, const char* key, double otherwise) {
   return otherwise;
 }
 
-/// What the format says of unit and axes, in the frame that Assimp hands out.
-void set_frame(Model& model, const aiScene& scene, const std::string& extension) {
-  if (extension == ".ifc" || extension == ".dae") {
-    // The unit and axes of the file are in the transform of Assimp's root node, which makes them y-up metres.
+/// What the format says of unit and axes.
+void set_frame(Model& model, const aiScene& scene, const std::filesystem::path& file, const std::string& extension) {
+  // The unit and axes of the file are in the transform of Assimp's root node, which makes them y-up metres.
+  if (extension == ".ifc") {
+    model.metres_per_unit = converted_ifc_unit(read_input_file(file, kMaxBytes)).value_or(1.0);
+    model.up = Up::z;  // turned back by back_to_z_up
+  } else if (extension == ".dae") {
     model.metres_per_unit = 1.0;
     model.up = Up::y;
   } else if (extension == ".fbx") {
@@ -122,7 +136,7 @@ void set_frame(Model& model, const aiScene& scene, const std::string& extension)
 Model to_model(const aiScene& scene, const std::filesystem::path& file, const std::string& extension) {
   const std::string name = short_name(file);
   Model model;
-  set_frame(model, scene, extension);
+  set_frame(model, scene, file, extension);
   for (unsigned m = 0; m < scene.mNumMaterials; ++m) {
     model.materials.push_back(to_material(*scene.mMaterials[m]));
   }
@@ -143,12 +157,13 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   UniqueNames names;
   std::vector<Owner> owners{{"", {}}};
   std::vector<Open> open;
-  if (scene.mRootNode) open.push_back({scene.mRootNode, {}, 0});
+  const Affine outermost = extension == ".ifc" ? back_to_z_up() : Affine{};
+  if (scene.mRootNode) open.push_back({scene.mRootNode, outermost, 0});
   std::size_t faces = 0;
   while (!open.empty()) {
     Open at = open.back();
     open.pop_back();
-    const Affine place = at.outer * to_affine(at.node->mTransformation);
+    const Affine place = without_rounding(at.outer * to_affine(at.node->mTransformation));
     if (const std::string own = str(at.node->mName); !is_made_up(own)) {
       at.owner = owners.size();
       owners.push_back({own, {}});

@@ -23,7 +23,10 @@ struct Seen {
 Seen look_around(const Problem& problem, std::size_t i, int ray_count, std::uint64_t seed) {
   const PatchSet& patches = problem.patches;
   const Frame frame(patches.normal[i]);
-  const auto corners = patches.corner_positions(PatchId{i});
+  auto corners = patches.corner_positions(PatchId{i});
+  // Off the edges: a start that rounding puts behind the neighbour would join the inside of a solid to the room.
+  const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
+  for (Vec3& corner : corners) corner = centre + (corner - centre) * 0.98;
   const double lift = problem.rays.lift();
   const std::uint64_t key = stream_key(seed, kSideRays, i);
   Seen seen;

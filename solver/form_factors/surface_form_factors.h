@@ -27,7 +27,7 @@ enum class GroupBy {
 PatchGroups group_patches(const PatchSet& patches, GroupBy by);
 
 struct SurfaceFactorOptions {
-  int samples = 4096;  ///< point pairs for each pair of triangles with something in between, a multiple of 256
+  int samples = 16'384;  ///< point pairs for each pair of triangles with something in between, a multiple of 256
   std::uint64_t seed = 1;
 };
 

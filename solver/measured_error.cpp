@@ -16,19 +16,22 @@ namespace {
 
 enum StreamKind : std::uint64_t { kErrorPoints = 0x71, kErrorPaths = 0x72, kSensorPaths = 0x73, kPilot = 0x74 };
 
+/// What a measurement may cost. Paths grow like 1 / (1 - rho): a bright room gets fewer of them, at fewer points, and a
+/// wider confidence, rather than hours.
 struct Budget {
   std::size_t points;
   int paths;
+  double rays;
 };
 
 Budget budget(Accuracy accuracy) {
   switch (accuracy) {
     case Accuracy::draft:
-      return {128, 512};
+      return {128, 512, 4e6};
     case Accuracy::standard:
-      return {256, 2048};
+      return {256, 2048, 1.6e7};
     case Accuracy::fine:
-      return {512, 8192};
+      return {512, 8192, 1.2e8};
   }
   return {};
 }
@@ -88,32 +91,47 @@ int affordable_paths(const Illumination& light, std::size_t samples, const Place
   return share >= 1 ? paths : std::max(16, static_cast<int>(paths * share));
 }
 
-/// References for samples whose x is set, at place(i) = {p, n}.
+/// Traces rays for references at place(i) = {p, n} of samples whose x is set, as many as the budget allows.
 template <class Place>
-MeasuredError compare(const Problem& problem, std::vector<Sample>& samples, const Place& place, int most_paths,
+MeasuredError compare(const Problem& problem, const std::vector<Sample>& samples, const Place& place, Budget spend,
                       std::uint64_t key, const Monitor& monitor) {
-  if (samples.empty()) return {};
   const Illumination light(problem);
-  const int paths = affordable_paths(light, samples.size(), place, most_paths, key);
-  std::vector<char> reached(samples.size(), 0);
+  constexpr int kFewestPaths = 64;
+  constexpr std::size_t kFewestPoints = 8;
+  const auto reference = [&](std::size_t i, std::uint64_t stream, int paths, unsigned long long& rays) {
+    const auto [p, n] = place(i);
+    return trace_paths_at_point(light, p, n, stream_key(stream, i), paths, rays);
+  };
+
+  unsigned long long pilot_rays = 0;
+  std::size_t pilots = 0;
+  for (std::size_t i = 0; i < samples.size(); i += samples.size() / kFewestPoints + 1, ++pilots)
+    reference(i, key + 1, kFewestPaths, pilot_rays);
+  const double rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(pilots * kFewestPaths);
+  const double affordable = spend.rays / rays_per_path;  // paths in all
+  const double points = static_cast<double>(samples.size());
+  const int paths = std::clamp(static_cast<int>(affordable / points), kFewestPaths, spend.paths);
+  const auto count = std::min(samples.size(), std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));
+
+  std::vector<Sample> measured(count);
+  std::vector<char> reached(count, 0);
   constexpr std::size_t kBlock = 32;
-  for (std::size_t begin = 0; begin < samples.size() && !monitor.should_stop(); begin += kBlock) {
-    monitor.report("error", static_cast<double>(begin) / static_cast<double>(samples.size()));
-    parallel_for(std::min(kBlock, samples.size() - begin), 1, [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = begin + from; i < begin + to; ++i) {
-        const auto [p, n] = place(i);
+  for (std::size_t begin = 0; begin < count && !monitor.should_stop(); begin += kBlock) {
+    monitor.report("error", static_cast<double>(begin) / static_cast<double>(count));
+    parallel_for(std::min(kBlock, count - begin), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = begin + from; k < begin + to; ++k) {
+        const std::size_t i = k * samples.size() / count;
         unsigned long long rays = 0;
-        const auto [E, std_error] = trace_paths_at_point(light, p, n, stream_key(key, i), paths, rays);
-        samples[i].r = luminous_mean(E);
-        samples[i].std_error = luminous_mean(std_error);
-        reached[i] = 1;
+        const auto [E, std_error] = reference(i, key, paths, rays);
+        measured[k] = {samples[i].x, luminous_mean(E), luminous_mean(std_error)};
+        reached[k] = 1;
       }
     });
   }
-  std::vector<Sample> measured;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    if (reached[i]) measured.push_back(samples[i]);
-  return summarise(measured);
+  std::vector<Sample> complete;
+  for (std::size_t k = 0; k < count; ++k)
+    if (reached[k]) complete.push_back(measured[k]);
+  return summarise(complete);
 }
 
 }  // namespace
@@ -148,7 +166,7 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
         patches.normal[i]};
   }
   return compare(
-      problem, samples, [&](std::size_t i) { return places[i]; }, spend.paths, stream_key(options.seed, kErrorPaths),
+      problem, samples, [&](std::size_t i) { return places[i]; }, spend, stream_key(options.seed, kErrorPaths),
       monitor);
 }
 
@@ -156,6 +174,7 @@ MeasuredError measure_sensor_error(const Problem& problem, std::span<const Senso
                                    const SolveOptions& options, const Monitor& monitor) {
   const Budget spend = budget(options.accuracy);
   const std::size_t count = std::min(points.size(), spend.points);
+  if (count == 0) return {};
   struct Place {
     Vec3 p, n;
   };
@@ -168,7 +187,7 @@ MeasuredError measure_sensor_error(const Problem& problem, std::span<const Senso
         const SensorPoint& point = points[point_of(s)];
         return Place{point.position - problem.patches.origin + point.normal * (2 * problem.rays.lift()), point.normal};
       },
-      spend.paths, stream_key(options.seed, kSensorPaths), monitor);
+      spend, stream_key(options.seed, kSensorPaths), monitor);
 }
 
 }  // namespace clerestory

@@ -38,7 +38,7 @@ bool has_area(const FaceComplex& complex, const std::array<std::uint32_t, 3>& c)
   const Vec3 a = complex.vertices[c[0]], b = complex.vertices[c[1]], d = complex.vertices[c[2]];
   const double longest = std::max({length(b - a), length(d - b), length(a - d)});
   const double height = length(cross(b - a, d - a)) / longest;
-  return height > std::min(kWeldShare * complex.allowed.contact, 0.1 * complex.allowed.local_share * longest);
+  return height > std::min(complex.allowed.contact, 0.1 * complex.allowed.local_share * longest);
 }
 
 /// Drops triangles that repeat one of the same material, wound the same way; counts those wound the other way.
@@ -116,7 +116,7 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
 
   // Vertices that hang on small faces weld with a small tolerance.
   std::vector<Vec3> local(soup.vertices.size());
-  std::vector<double> tolerance(soup.vertices.size(), kWeldShare * allowed.contact);
+  std::vector<double> tolerance(soup.vertices.size(), allowed.contact);
   for (std::size_t f = 0; f < face_count; ++f) {
     if (!usable[f]) continue;
     Box box;
@@ -152,7 +152,7 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
     while (ids.size() > 1 && ids.back() == ids.front()) ids.pop_back();
     for (const std::uint32_t v : ids) polygon.push_back(complex.vertices[v]);
     const PolygonTriangles pieces = triangulate_polygon(polygon);
-    for (const Vec3& p : pieces.crossings) ids.push_back(weld(p, kWeldShare * allowed.contact));
+    for (const Vec3& p : pieces.crossings) ids.push_back(weld(p, allowed.contact));
     bool any = false;
     for (const auto& t : pieces.triangles) {
       const std::array<std::uint32_t, 3> corner{ids[t[0]], ids[t[1]], ids[t[2]]};

@@ -139,11 +139,13 @@ std::vector<Ends> distinct_ends(const std::vector<Line>& lines) {
 
 /// Splits lines at vertices that lie on them and at the `forced` ones. Returns how many distinct lines were split at a
 /// vertex below `first_new`.
-std::size_t split(const FaceComplex& complex, std::vector<Line>& lines, const std::map<Ends, Stops>& forced,
+std::size_t split(const FaceComplex& complex, Drawing& drawing, const std::map<Ends, Stops>& forced,
                   std::uint32_t first_new) {
+  std::vector<Line>& lines = drawing.lines;
   const std::vector<Ends> ends = distinct_ends(lines);
   std::vector<std::uint32_t> used;
   for (const Ends& e : ends) used.insert(used.end(), e.begin(), e.end());
+  for (const auto& [group, v] : drawing.points) used.push_back(v);
   for (const auto& [e, stops] : forced) used.insert(used.end(), stops.begin(), stops.end());
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -280,7 +282,7 @@ void drop_crossing(std::vector<Line>& lines, const std::vector<std::vector<Cross
 
 }  // namespace
 
-void split_at_vertices(const FaceComplex& complex, std::vector<Line>& lines) { split(complex, lines, {}, 0); }
+void split_at_vertices(const FaceComplex& complex, Drawing& drawing) { split(complex, drawing, {}, 0); }
 
 Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& groups, MeshReport& report) {
   Drawing drawing;
@@ -294,7 +296,7 @@ Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& gr
   keep_unique(drawing.lines);
   const auto first_new = static_cast<std::uint32_t>(complex.vertices.size());
   // T-junctions: vertices of the model inside edges of the model.
-  report.t_junctions = split(complex, drawing.lines, {}, first_new);
+  report.t_junctions = split(complex, drawing, {}, first_new);
 
   PointIndex index(complex.vertices, complex.allowed.contact);
   for (std::uint32_t v = 0; v < first_new; ++v) index.add(v);
@@ -325,7 +327,7 @@ Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& gr
   const std::size_t too_many = 1000 + 3 * complex.vertices.size();
   constexpr int kRounds = 8;
   for (int round = 0;; ++round) {
-    split(complex, drawing.lines, forced, 0);
+    split(complex, drawing, forced, 0);
     forced.clear();
     const auto found = crossings_by_group(complex, groups, drawing.lines);
     std::size_t count = 0;

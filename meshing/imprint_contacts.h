@@ -24,6 +24,6 @@ struct Drawing {
 Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& groups, MeshReport& report);
 
 /// The last step of it, for lines that changed: splits lines at the vertices used by any of them that lie on them.
-void split_at_vertices(const FaceComplex& complex, std::vector<Line>& lines);
+void split_at_vertices(const FaceComplex& complex, Drawing& drawing);
 
 }  // namespace clerestory

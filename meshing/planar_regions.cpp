@@ -187,7 +187,7 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
     drawing.lines.clear();
     for (const Use& u : uses) drawing.lines.push_back({u.group, u.a, u.b});
     std::sort(drawing.lines.begin(), drawing.lines.end());
-    split_at_vertices(complex, drawing.lines);
+    split_at_vertices(complex, drawing);
   }
 
   Graph graph = needed_lines(uses);

@@ -102,10 +102,9 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
     group.faces = grow(seed, group.plane, kDrift);
     const Plane fitted = fit(group.plane, complex, shapes, group.faces);
     const auto fits = [&](std::uint32_t f) { return lies_in(fitted, complex, complex.faces[f], shapes[f], 0); };
-    // ... if one plane does for all of it; else what lies in the seed's plane strictly.
-    if (std::all_of(group.faces.begin(), group.faces.end(), fits)) {
-      group.plane = fitted;
-    } else {
+    // ... and then strictly in the plane that fits all of that, unless it is not the seed's any more.
+    if (fits(seed)) group.plane = fitted;
+    if (!fits(seed) || !std::all_of(group.faces.begin(), group.faces.end(), fits)) {
       for (const std::uint32_t f : group.faces) placed[f] = false;
       group.faces = grow(seed, group.plane, 0);
     }

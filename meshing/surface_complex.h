@@ -20,11 +20,8 @@ struct Tolerance {
 };
 /// Coordinates of single precision files lie within 1e-7 of where they should. Where a model turns out to be less exact
 /// (rounded to millimetres, say), it is tried again with the next.
-inline constexpr std::array kTolerances{Tolerance{4e-7, 0.01}, Tolerance{4e-6, 0.1}, Tolerance{2e-5, 1},
+inline constexpr std::array kTolerances{Tolerance{6e-7, 0.01}, Tolerance{5e-6, 0.1}, Tolerance{2e-5, 1},
                                         Tolerance{1e-4, 1}};
-/// Points closer than this share of `contact` are one point.
-inline constexpr double kWeldShare = 0.5;
-
 struct Face {
   std::array<std::uint32_t, 3> corner;  ///< counter-clockwise around the front
   MaterialId material;

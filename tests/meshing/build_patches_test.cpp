@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "meshing/make_lightmap.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
 #include "tests/meshing/mesh_checks.h"
 
 namespace clerestory {
@@ -386,6 +388,54 @@ TEST(BuildPatches, KeepsDetailAMillionTimesSmallerThanTheModel) {
   const PatchSet p = mesh(maker, 20).patches;
   // The grid of 2^-32 of the model is 0.03 um there; the grain's edge is 100 um.
   EXPECT_NEAR(area_of(p, MaterialId{std::size_t{1}}, kFront), 6 * s * s, 6 * s * s * 2e-3);
+}
+
+TEST(BuildPatches, AnyTangleOfFacesGivesASoundMesh) {
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    RandomStream random(seed, 1);
+    SceneMaker maker;
+    const std::array<MaterialId, 3> materials{maker.material("a"), maker.material("b"), maker.material("glass")};
+    maker.edit(materials[2]).kind = MaterialKind::glass;
+    const auto on_grid = [&] { return std::floor(random.uniform() * 5); };
+    for (int i = 0; i < 30; ++i) {
+      const MaterialId m = materials[static_cast<std::size_t>(random.uniform() * 3)];
+      const auto point = [&]() -> Vec3 {
+        // Anywhere; all in a few planes; on a grid, where everything touches everything.
+        if (seed % 3 == 0) return {random.uniform(), random.uniform(), random.uniform()};
+        return {on_grid(), on_grid(), seed % 3 == 1 ? i % 3 : on_grid()};
+      };
+      if (i % 3 == 0) {
+        const Vec3 a = point();
+        maker.box(a, a + Vec3{1 + on_grid(), 1 + on_grid(), 1 + on_grid()}, m);
+      } else if (i % 3 == 1) {
+        maker.polygon({point(), point(), point(), point(), point()}, m);
+      } else {
+        maker.polygon({point(), point(), point()}, m);
+      }
+    }
+    const auto [p, report] = build_patches(maker.scene());
+    EXPECT_EQ(t_vertices(p), 0u) << "seed " << seed;
+    EXPECT_EQ(coincident_triangles(p), 0u) << "seed " << seed;
+    EXPECT_LE(report.longest_edge, report.max_element * (1 + 1e-9)) << "seed " << seed;
+    for (std::size_t t = 0; t < p.triangle_count(); ++t)
+      EXPECT_EQ(p.is_glass(TriangleId{t}), p.side_material[t][kBack] == materials[2]) << "glass owns both sides";
+    make_lightmap(p);
+  }
+}
+
+TEST(BuildPatches, AModelRoundedToMillimetresIsTakenWithAWiderTolerance) {
+  // Walls, slabs and boxes turned by some degrees on each other, all corners rounded to 1 mm in 20 m.
+  SceneMaker maker;
+  for (int i = 0; i < 12; ++i) maker.box({0.7 * i, 0.5 * i, 0}, {0.7 * i + 8, 0.5 * i + 10, 3.0 + (i % 3)});
+  const double angle = 0.3;
+  for (Vec3& v : maker.scene().polygons.vertices) {
+    const Vec3 turned{std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y,
+                      v.z};
+    v = {std::round(turned.x * 1e3) / 1e3, std::round(turned.y * 1e3) / 1e3, turned.z};
+  }
+  const auto [p, report] = build_patches(maker.scene());
+  EXPECT_EQ(t_vertices(p), 0u);
+  EXPECT_LT(p.triangle_count(), 30'000u);
 }
 
 TEST(BuildPatches, RefusesWhatHasNoSurfaceAndSaysWhy) {

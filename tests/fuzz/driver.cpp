@@ -13,9 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "fuzz_input.h"
-
 #include "solver/model/random_stream.h"
+#include "tests/fuzz/fuzz_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 

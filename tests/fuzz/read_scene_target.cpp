@@ -5,10 +5,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "fuzz_input.h"
-
 #include "io/read_scene.h"
 #include "solver/model/error.h"
+#include "tests/fuzz/fuzz_input.h"
 
 namespace clerestory {
 namespace {

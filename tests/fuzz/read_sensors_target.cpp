@@ -3,10 +3,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "fuzz_input.h"
-
 #include "io/read_sensors.h"
 #include "solver/model/error.h"
+#include "tests/fuzz/fuzz_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clerestory;

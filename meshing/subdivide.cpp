@@ -24,6 +24,22 @@ struct Halving {
   std::uint32_t middle;
 };
 
+/// Where two planes meet in a wedge lower than the tolerance, both may hold the same needle: the first plane keeps it.
+void keep_each_once(std::vector<MeshTriangle>& triangles) {
+  std::vector<std::pair<std::array<std::uint32_t, 3>, std::size_t>> keys(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    keys[t] = {triangles[t].corner, t};
+    std::sort(keys[t].first.begin(), keys[t].first.end());
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<bool> repeats(triangles.size());
+  for (std::size_t k = 1; k < keys.size(); ++k) repeats[keys[k].second] = keys[k].first == keys[k - 1].first;
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (!repeats[t]) triangles[kept++] = triangles[t];
+  triangles.resize(kept);
+}
+
 /// One plane under refinement.
 class RegionMesh {
  public:
@@ -350,6 +366,7 @@ std::vector<MeshTriangle> subdivide(FaceComplex& complex, const std::vector<Plan
     report.planar_regions += mesh->cell_count();
     report.overlapping_regions += mesh->overlapping_count();
   }
+  keep_each_once(triangles);
   return triangles;
 }
 

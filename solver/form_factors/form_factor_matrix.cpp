@@ -25,12 +25,12 @@ constexpr std::size_t kTile = 32;
 constexpr double kQuadratureError = 3e-4;
 constexpr int kClosureRays = 128;
 /// Standard error of one factor above which its visibility is sampled again by more rays.
-constexpr double kPairError = 2e-5;
+constexpr double kPairError = 3e-5;
 /// Standard error of a row's sum above which all its doubtful pairs are sampled again, by kSecondSamples rays. Patches
 /// in a narrow gap need it, which have hundreds of half hidden partners. The true error is about half of this estimate,
 /// which takes stratified samples for independent ones.
-constexpr double kRowError = 2.5e-4;
-constexpr int kSecondSamples = 512;
+constexpr double kRowError = 3e-4;
+constexpr int kSecondSamples = 256;
 constexpr int kMostSamples = 32'768;
 
 /// Patches of a compact cluster stand together in `order`, so that a tile of pairs shares one shaft.

@@ -1,5 +1,6 @@
 // Jacobi and Gauss-Seidel: what must hold of both.
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -40,25 +41,28 @@ double mean_irradiance(const PatchSet& patches, const Solution& solution) {
 
 TEST_P(FullMatrixMethod, AFurnaceIsUniformAtAnyReflectanceAndScale) {
   // All surfaces alike: B = M / (1 - rho) everywhere. Bars of the issue: 1e-3 up to 0.99, 1e-2 at 0.9999.
-  for (const double scale : {1e-3, 1.0, 1e4})
+  for (const double scale : {1e-3, 1e4}) {
+    PatchSet patches = RoomWithBlocks{.room_cells = {3, 2, 2}, .block_cells = 1, .exitance = 2, .scale = scale}.build();
+    const FormFactorMatrix F = form_factor_matrix(patches, RayScene(patches));
     for (const double rho : {0.0, 0.5, 0.9, 0.99, 0.9999}) {
-      const PatchSet patches =
-          RoomWithBlocks{.room_cells = {5, 4, 3}, .block_cells = 1, .reflectance = rho, .exitance = 2, .scale = scale}
-              .build();
-      const Solution s = solve(patches);
+      std::ranges::fill(patches.rho.value, rho);
+      const Solution s = solve(patches, F, Field(patches.patch_count(), 1));
       EXPECT_EQ(s.stop, StopReason::converged);
       for (std::size_t i = 0; i < patches.patch_count(); ++i)
         ASSERT_NEAR(s.B.at(i, 0) * (1 - rho) / 2, 1, rho > 0.99 ? 1e-2 : 1e-3) << "rho " << rho << " scale " << scale;
     }
+  }
 }
 
 TEST_P(FullMatrixMethod, MeanIrradianceOfAClosedRoomOfOneReflectanceIsExact) {
   // flux / (area (1 - rho)), wherever the light comes from: here from a corner of the floor.
+  PatchSet patches = RoomWithBlocks{.room_cells = {6, 5, 4}, .block_cells = 1}.build();
+  const FormFactorMatrix F = form_factor_matrix(patches, RayScene(patches));
+  double flux = 0;
+  for (std::size_t i = 0; i < 6; ++i) patches.M.at(i, 0) = 50, flux += 50 * patches.area[i];
   for (const double rho : {0.0, 0.3, 0.8, 0.99, 0.9999}) {
-    PatchSet patches = RoomWithBlocks{.room_cells = {6, 5, 4}, .block_cells = 2, .reflectance = rho}.build();
-    double flux = 0;
-    for (std::size_t i = 0; i < 6; ++i) patches.M.at(i, 0) = 50, flux += 50 * patches.area[i];
-    const Solution s = solve(patches);
+    std::ranges::fill(patches.rho.value, rho);
+    const Solution s = solve(patches, F, Field(patches.patch_count(), 1));
     const double exact = flux / (patches.total_area() * (1 - rho));
     EXPECT_NEAR(mean_irradiance(patches, s) / exact, 1, rho > 0.99 ? 1e-2 : 1e-3) << rho;
     EXPECT_NEAR(s.energy.imbalance(), 0, 1e-6) << rho;
@@ -127,7 +131,7 @@ TEST_P(FullMatrixMethod, ThreeChannelsAreThreeGreySolutions) {
 
 TEST_P(FullMatrixMethod, HasTheSameBitsForOneThreadAndForTwo) {
   const PatchSet patches =
-      RoomWithBlocks{.room_cells = {6, 5, 4}, .block_cells = 2, .reflectance = 0.7, .exitance = 1}.build();
+      RoomWithBlocks{.room_cells = {4, 3, 2}, .block_cells = 1, .reflectance = 0.7, .exitance = 1}.build();
   const FormFactorMatrix F = form_factor_matrix(patches, RayScene(patches));
   const Field dark(patches.patch_count(), 1);
   set_thread_count(1);

@@ -11,7 +11,9 @@
 #include "apps/run.h"
 #include "apps/wording.h"
 #include "io/atomic_file.h"
+#include "io/run_report.h"
 #include "io/scene_file/nearest_name.h"
+#include "io/write_result.h"
 #include "meshing/triangulate_polygon.h"
 #include "solver/form_factors/surface_form_factors.h"
 #include "solver/model/error.h"
@@ -31,7 +33,7 @@ constexpr std::array<std::string_view, 4> kGroupNames{"object", "material", "sur
 
 std::string problem_with_group(const std::string& name) {
   if (std::ranges::find(kGroupNames, name) != kGroupNames.end()) return {};
-  return "--by '" + name + "' is not known; " + suggestion(name, kGroupNames) + ".";
+  return "'" + name + "' is not known; " + suggestion(name, kGroupNames) + ".";
 }
 
 GroupBy group_by(const Arguments& arguments) {
@@ -137,6 +139,17 @@ ExitCode formfactors_command(const Arguments& arguments, Console& console) {
   if (groups.name.size() > kRowsShown)
     console.say("row sums of " + std::to_string(groups.name.size() - kRowsShown) + " more groups are not shown");
   console.say("reciprocity error " + four_digits(factors.reciprocity_error));
+  if (!arguments.common.report.empty()) {
+    RunReport report = new_report(arguments.input);
+    report.threads = arguments.common.threads;
+    report.counts.triangles = patches.triangle_count();
+    report.counts.elements = patches.patch_count();
+    report.counts.rays = factors.rays;
+    report.seconds.total = console.elapsed();
+    report.peak_memory_bytes = peak_memory_bytes();
+    report.warnings = console.warnings();
+    write_report(arguments.common.report, report);
+  }
   console.say("results " + arguments.output);
   return kDone;
 }

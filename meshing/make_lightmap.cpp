@@ -49,6 +49,53 @@ Side side_towards(const HalfEdge& e, bool counter_clockwise) {
   return e.ascending == counter_clockwise ? kFront : kBack;
 }
 
+double angle_at(const std::array<Vec3, 3>& x, std::size_t k) {
+  const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
+  return std::atan2(length(cross(e, f)), dot(e, f));
+}
+
+/// Facets around a point that face nearly the same way.
+struct Facing {
+  Vec3 normal;  ///< of the first of them
+  Vec3 inward;  ///< sum of the ways to the centroids of those in the first one's plane
+  int in_plane = 0;
+  double weight = 0;  ///< angle at the point
+};
+
+/// Samples lie in the plane of a facet, whose own normal they take: moved towards the mean of all facets' centroids, a
+/// point of a convex edge would sink under the surface.
+void place_samples(const PatchSet& patches, VertexLightmap& map) {
+  constexpr double kAlike = 0.99;          // cosine of 8 degrees: turning a facet so far changes E by little
+  constexpr double kInPlane = 1 - 5e-9;    // 1e-4 rad
+  constexpr double kWayToCentroid = 2e-3;  // far enough from edges for single precision rays, too near to be seen
+  std::vector<std::vector<Facing>> facings(map.position.size());
+  for (std::uint32_t p = 0; p < patches.patch_count(); ++p) {
+    const auto x = patches.corner_positions(PatchId{p});
+    const Vec3 centroid = (x[0] + x[1] + x[2]) / 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto& around = facings[map.corners[p][k]];
+      auto facing = std::find_if(around.begin(), around.end(),
+                                 [&](const Facing& f) { return dot(f.normal, patches.normal[p]) > kAlike; });
+      if (facing == around.end()) facing = around.insert(around.end(), Facing{patches.normal[p], {}, 0, 0});
+      facing->weight += angle_at(x, k);
+      if (dot(facing->normal, patches.normal[p]) < kInPlane) continue;
+      facing->inward += centroid - x[k];
+      ++facing->in_plane;
+    }
+  }
+  map.sample_begin = {0};
+  for (std::size_t i = 0; i < facings.size(); ++i) {
+    double sum = 0;
+    for (const Facing& f : facings[i]) sum += f.weight;
+    for (const Facing& f : facings[i]) {
+      map.sample_position.push_back(map.position[i] + f.inward * (kWayToCentroid / f.in_plane));
+      map.sample_normal.push_back(f.normal);
+      map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings[i].size()));
+    }
+    map.sample_begin.push_back(static_cast<std::uint32_t>(map.sample_position.size()));
+  }
+}
+
 }  // namespace
 
 VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
@@ -100,13 +147,10 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
   map.corners.resize(count);
   constexpr std::uint32_t kNone = 0xffffffff;
   std::vector<std::uint32_t> point_of(3 * count, kNone);
-  std::vector<Vec3> inward;        // sum of ways to the centroids
-  std::vector<std::uint32_t> fan;  // patches that share the point
   for (std::uint32_t p = 0; p < count; ++p) {
     const TriangleId t = patches.triangle[p];
     std::array<Vec3, 3> x;
     for (std::size_t k = 0; k < 3; ++k) x[k] = patches.vertices[patches.corners[t][k]];
-    const Vec3 centroid = (x[0] + x[1] + x[2]) / 3;
     for (std::uint32_t k = 0; k < 3; ++k) {
       std::uint32_t& point = point_of[shared.root(3 * p + k)];
       if (point == kNone) {
@@ -114,25 +158,18 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
         map.position.push_back(x[k]);
         map.normal.emplace_back();
         map.patch_of_point.push_back(p);
-        inward.emplace_back();
-        fan.push_back(0);
       }
-      const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
-      map.normal[point] += patches.normal[p] * std::atan2(length(cross(e, f)), dot(e, f));
-      inward[point] += centroid - x[k];
-      ++fan[point];
+      map.normal[point] += patches.normal[p] * angle_at(x, k);
       // Seen from the back the corners run the other way.
       const std::uint32_t place = patches.side[p] == kFront ? k : (3 - k) % 3;
       map.corners[p][place] = point;
     }
   }
-  map.sample_position.resize(map.position.size());
   for (std::size_t i = 0; i < map.position.size(); ++i) {
     const Vec3 n = normalized(map.normal[i]);
     map.normal[i] = n == Vec3{} ? patches.normal[map.patch_of_point[i]] : n;
-    // Far enough from edges and contacts for single precision rays, and near enough not to be seen.
-    map.sample_position[i] = map.position[i] + inward[i] * (2e-3 / fan[i]);
   }
+  place_samples(patches, map);
   map.E = Field(map.position.size(), patches.channels);
   return map;
 }

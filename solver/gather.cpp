@@ -1,5 +1,7 @@
 #include "solver/gather.h"
 
+#include <cmath>
+
 #include "solver/gather_point.h"
 #include "solver/methods/path_tracer.h"
 #include "solver/model/parallel.h"
@@ -95,18 +97,40 @@ PointIrradiance gather_at_sensors(const Problem& problem, const Solution& soluti
 unsigned long long gather_at_points(const Problem& problem, const Solution& solution, VertexLightmap& lightmap,
                                     const SolveOptions& options, const Monitor& monitor) {
   const Illumination light(problem);
-  if (!solution.std_error.value.empty()) lightmap.std_error = Field(lightmap.position.size(), problem.patches.channels);
-  return gather(
-      light, solution, lightmap.position.size(),
+  const std::size_t samples = lightmap.sample_position.size(), points = lightmap.position.size();
+  Field E(samples, problem.patches.channels), std_error;
+  if (!solution.std_error.value.empty()) std_error = E;
+  std::vector<char> reached(samples, 0);
+  const auto rays = gather(
+      light, solution, samples,
       [&](std::size_t i) {
-        const Vec3 n = lightmap.normal[i];
+        const Vec3 n = lightmap.sample_normal[i];
         return Place{lightmap.sample_position[i] + n * problem.rays.lift(), n};
       },
       vertex_quality(options), paths_per_point(options), stream_key(options.seed, kVertexRays), "vertices", monitor,
-      [&](std::size_t i, const Spectrum& E, const Spectrum& error) {
-        lightmap.E.set(i, E);
-        if (!lightmap.std_error.value.empty()) lightmap.std_error.set(i, error);
+      [&](std::size_t i, const Spectrum& value, const Spectrum& error) {
+        E.set(i, value);
+        if (!std_error.value.empty()) std_error.set(i, error);
+        reached[i] = 1;
       });
+
+  if (!std_error.value.empty()) lightmap.std_error = Field(points, problem.patches.channels);
+  for (std::size_t p = 0; p < points; ++p) {
+    const std::uint32_t begin = lightmap.sample_begin[p], end = lightmap.sample_begin[p + 1];
+    Spectrum mean(0.0), variance(0.0);
+    bool complete = true;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      complete = complete && reached[i];
+      const double weight = lightmap.sample_weight[i];
+      mean += E[i] * weight;
+      if (!std_error.value.empty()) variance += std_error[i] * std_error[i] * (weight * weight);
+    }
+    if (!complete) continue;
+    lightmap.E.set(p, mean);
+    if (!std_error.value.empty())
+      lightmap.std_error.set(p, {std::sqrt(variance[0]), std::sqrt(variance[1]), std::sqrt(variance[2])});
+  }
+  return rays;
 }
 
 std::vector<std::size_t> buried_points(const Problem& problem, std::span<const SensorPoint> points) {

@@ -16,10 +16,16 @@ struct VertexLightmap {
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< N, points, counter-clockwise from the lit side
   std::vector<Vec3> position;                         ///< P, local frame of the PatchSet [m]
   std::vector<Vec3> normal;                           ///< P, unit, mean of the patches that share the point
-  std::vector<Vec3> sample_position;          ///< P, moved a little into the surface, off edges and contacts [m]
-  std::vector<std::uint32_t> patch_of_point;  ///< P, one of the patches that share the point
-  Field E;                                    ///< P, irradiance [W/m2]; filled after the solve
-  Field std_error;                            ///< P, standard error of E; empty unless E is a random estimate
+  std::vector<std::uint32_t> patch_of_point;          ///< P, one of the patches that share the point
+  Field E;                                            ///< P, irradiance [W/m2]; filled after the solve
+  Field std_error;                                    ///< P, standard error of E; empty unless E is a random estimate
+
+  // Where irradiance is gathered, S samples: one for each direction that the facets around a point face, so one for a
+  // point of a flat surface. Point p has samples sample_begin[p] .. sample_begin[p + 1] - 1, of weights that sum to 1.
+  std::vector<std::uint32_t> sample_begin;  ///< P + 1
+  std::vector<Vec3> sample_position;        ///< S, on a facet, a little away from the point: off edges and contacts [m]
+  std::vector<Vec3> sample_normal;          ///< S, unit, of that facet
+  std::vector<double> sample_weight;        ///< S
 };
 
 }  // namespace clerestory

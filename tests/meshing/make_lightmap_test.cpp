@@ -120,6 +120,7 @@ TEST(MakeLightmap, SamplesStartALittleInsideOfTheSurface) {
   maker.box({0, 0, 0}, {2, 2, 2});
   const PatchSet p = mesh(maker, 0.5);
   const VertexLightmap map = make_lightmap(p);
+  ASSERT_EQ(map.sample_position.size(), map.position.size());  // flat: one sample a point
   for (std::size_t i = 0; i < map.position.size(); ++i) {
     const Vec3 d = map.sample_position[i] - map.position[i];
     EXPECT_LT(length(d), 1e-3);                    // of elements of 0.5 m
@@ -130,6 +131,32 @@ TEST(MakeLightmap, SamplesStartALittleInsideOfTheSurface) {
                          (std::abs(std::abs(s.z) - 1) < 1e-9);
     EXPECT_EQ(on_faces, 1);
   }
+}
+
+TEST(MakeLightmap, SamplesOfASmoothRoofLieOnItsFacetsAndNotUnderThem) {
+  // A flat eight-sided pyramid: its apex is one point. Between the facets' centroids it would sink into the roof.
+  SceneMaker maker;
+  const auto rim = [](int k) {
+    const double turn = k * std::numbers::pi / 4;
+    return Vec3{std::cos(turn), std::sin(turn), 0};
+  };
+  for (int k = 0; k < 8; ++k) maker.polygon({rim(k), rim(k + 1), {0, 0, 0.4}});
+  const PatchSet p = mesh(maker, 2);
+  const VertexLightmap map = make_lightmap(p);
+  std::size_t apex = map.position.size();
+  for (std::size_t i = 0; i < map.position.size(); ++i)
+    if (length(map.position[i] + p.origin - Vec3{0, 0, 0.4}) < 1e-9 && map.normal[i].z > 0) apex = i;
+  ASSERT_LT(apex, map.position.size());
+  ASSERT_EQ(map.sample_begin[apex + 1] - map.sample_begin[apex], 8u);
+  double weights = 0;
+  for (std::uint32_t s = map.sample_begin[apex]; s < map.sample_begin[apex + 1]; ++s) {
+    const Vec3 d = map.sample_position[s] - map.position[apex];
+    EXPECT_NEAR(dot(d, map.sample_normal[s]), 0, 1e-12);
+    for (std::uint32_t other = map.sample_begin[apex]; other < map.sample_begin[apex + 1]; ++other)
+      EXPECT_LT(dot(d, map.sample_normal[other]), 1e-12) << "above a facet of a convex roof";
+    weights += map.sample_weight[s];
+  }
+  EXPECT_NEAR(weights, 1, 1e-12);
 }
 
 TEST(MakeLightmap, AveragesByArea) {

@@ -46,7 +46,8 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
                                      .seed = options.seed};
   const DirectLight direct = direct_light(light, direct_options, monitor);
   const auto closure = [&] {
-    return measure_closure(problem, by_accuracy(options.accuracy, 32, 64, 128), options.seed);
+    const int rays = monitor.should_stop() ? 16 : by_accuracy(options.accuracy, 32, 64, 128);
+    return measure_closure(problem, rays, options.seed);
   };
   switch (options.method) {
     case Method::progressive: {

@@ -131,20 +131,28 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
 
   const double far_away = 4 * problem.rays.diameter();
   std::vector<double> daylight(n);  // [W] of each patch
-  constexpr std::size_t kBlock = 1 << 14;
+  const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
+    const PatchSampler patch(problem, i, spend);
+    Spectrum lamps(0.0), sky(0.0);
+    for (const auto& lamp : lights.points) lamps += from_lamp(patch, lamp);
+    for (const auto& lamp : lights.spots) lamps += from_lamp(patch, lamp);
+    for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
+    if (!light.sky.dark()) sky += from_sky(light, i, spend);
+    direct.E.set(i, lamps + sky);
+    daylight[i] = luminous_mean(sky) * problem.patches.area[i];
+  };
+  if (monitor.deadline != Monitor{}.deadline) {
+    // Time may run out below: no patch shall stay dark for that.
+    const DirectOptions rough{.lamp_rays = 16, .sky_rays = 16, .seed = options.seed};
+    parallel_for(n, 32, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) light_patch(i, rough);
+    });
+  }
+  constexpr std::size_t kBlock = 1 << 11;
   for (std::size_t begin = 0; begin < n && !monitor.should_stop(); begin += kBlock) {
     monitor.report("direct", static_cast<double>(begin) / static_cast<double>(n));
     parallel_for(std::min(kBlock, n - begin), 32, [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = begin + from; i < begin + to; ++i) {
-        const PatchSampler patch(problem, i, options);
-        Spectrum lamps(0.0), sky(0.0);
-        for (const auto& lamp : lights.points) lamps += from_lamp(patch, lamp);
-        for (const auto& lamp : lights.spots) lamps += from_lamp(patch, lamp);
-        for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
-        if (!light.sky.dark()) sky += from_sky(light, i, options);
-        direct.E.set(i, lamps + sky);
-        daylight[i] = luminous_mean(sky) * problem.patches.area[i];
-      }
+      for (std::size_t i = begin + from; i < begin + to; ++i) light_patch(i, options);
     });
   }
   for (const double flux : daylight) direct.energy.emitted += flux;

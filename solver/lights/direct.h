@@ -20,7 +20,8 @@ struct DirectLight {
   unsigned long long rays = 0;
 };
 
-/// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share.
+/// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share. With a deadline all
+/// patches get a rough value first, in case it comes before the good ones are done.
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {});
 
 }  // namespace clerestory

@@ -38,6 +38,11 @@ GatherQuality vertex_quality(const SolveOptions& options) {
   return {};
 }
 
+/// Paths meet reflected light on their way; a gather looks it up, and bright patches are lamps to it.
+Illumination illumination(const Problem& problem, const Solution& solution) {
+  return solution.std_error.value.empty() ? Illumination(problem, solution.B) : Illumination(problem);
+}
+
 struct Place {
   Vec3 p, n;  ///< local frame, lifted
 };
@@ -59,7 +64,7 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
           const auto [E, std_error] = trace_paths_at_point(light, at.p, at.n, stream_key(key, i), paths, rays[i]);
           done(i, E, std_error);
         } else {
-          done(i, gather_point(light, solution.B, at.p, at.n, quality, stream_key(key, i), rays[i]), Spectrum(0.0));
+          done(i, gather_point(light, at.p, at.n, quality, stream_key(key, i), rays[i]), Spectrum(0.0));
         }
       }
     });
@@ -73,7 +78,7 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
 
 PointIrradiance gather_at_sensors(const Problem& problem, const Solution& solution, std::span<const SensorPoint> points,
                                   const SolveOptions& options, const Monitor& monitor) {
-  const Illumination light(problem);
+  const Illumination light = illumination(problem, solution);
   PointIrradiance result;
   result.E = Field(points.size(), problem.patches.channels);
   if (!solution.std_error.value.empty()) result.std_error = result.E;
@@ -96,7 +101,7 @@ PointIrradiance gather_at_sensors(const Problem& problem, const Solution& soluti
 
 unsigned long long gather_at_points(const Problem& problem, const Solution& solution, VertexLightmap& lightmap,
                                     const SolveOptions& options, const Monitor& monitor) {
-  const Illumination light(problem);
+  const Illumination light = illumination(problem, solution);
   const std::size_t samples = lightmap.sample_position.size(), points = lightmap.position.size();
   Field E(samples, problem.patches.channels), std_error;
   if (!solution.std_error.value.empty()) std_error = E;

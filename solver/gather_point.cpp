@@ -35,8 +35,7 @@ struct Strata {
 /// What comes back along rays, as radiosity: irradiance is its mean over cosine-distributed rays.
 class Bundle {
  public:
-  Bundle(const Illumination& light, const Field& B, const Vec3& p, const Frame& frame)
-      : light_(light), B_(B), p_(p), frame_(frame) {}
+  Bundle(const Illumination& light, const Vec3& p, const Frame& frame) : light_(light), p_(p), frame_(frame) {}
 
   Vec3 direction(double u, double v) const { return cosine_direction(frame_, u, v); }
 
@@ -55,12 +54,12 @@ class Bundle {
       if (hit.escaped()) {
         values[k] = light_.sky(directions[k]) * std::numbers::pi * hit.transmittance;
       } else if (hit.patch.valid()) {
-        Spectrum back = B_[hit.patch];
+        Spectrum back = light_.lamps.glow()[hit.patch];
         if (lamp_rays > 0 && light_.lamps.is_explicit(hit.patch)) {
           const double cos_patch = -dot(problem.patches.normal[hit.patch], directions[k]);
           const double bundle = density[k] * dot(frame_.n, directions[k]) / std::numbers::pi;
           const double lamp = lamp_rays * light_.lamps.density(hit.patch, hit.distance, cos_patch, true);
-          back = back - problem.patches.M[hit.patch] * (lamp / (bundle + lamp));
+          back *= bundle / (bundle + lamp);
         }
         values[k] = back * hit.transmittance;
       }
@@ -69,7 +68,6 @@ class Bundle {
 
  private:
   const Illumination& light_;
-  const Field& B_;
   Vec3 p_;
   Frame frame_;
 };
@@ -140,11 +138,11 @@ Spectrum bright_patches(const Illumination& light, const Strata& strata, const s
 
 }  // namespace
 
-Spectrum gather_point(const Illumination& light, const Field& B, const Vec3& p, const Vec3& n,
-                      const GatherQuality& quality, std::uint64_t key, unsigned long long& rays) {
+Spectrum gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherQuality& quality,
+                      std::uint64_t key, unsigned long long& rays) {
   const Strata strata{quality.grid};
   const Frame frame(n);
-  const Bundle bundle(light, B, p, frame);
+  const Bundle bundle(light, p, frame);
   const int lamp_rays = light.lamps.has_emitters() ? quality.lamp_rays : 0;
   RandomStream random(key);
 

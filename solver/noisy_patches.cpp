@@ -7,10 +7,11 @@
 
 namespace clerestory {
 
-std::size_t gather_noisy_patches(const Illumination& light, Solution& solution, double fewest,
+std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, double fewest,
                                  const GatherQuality& quality, std::uint64_t seed, const Monitor& monitor) {
   constexpr std::uint64_t kNoisyPatches = 0x81;
-  const PatchSet& patches = light.problem.patches;
+  const PatchSet& patches = problem.patches;
+  const Illumination light(problem, solution.B);
   std::vector<std::uint32_t> noisy;
   for (std::size_t i = 0; i < patches.patch_count(); ++i)
     if (patches.area[i] * luminous_mean(solution.E[i]) < fewest * solution.flux_per_ray)
@@ -29,8 +30,8 @@ std::size_t gather_noisy_patches(const Illumination& light, Solution& solution, 
         RandomStream random(key);
         const double u = random.uniform(), v = random.uniform();
         const Vec3 n = patches.normal[i];
-        const Vec3 p = point_on_triangle(patches.corner_positions(i), u, v) + n * light.problem.rays.lift();
-        E.set(i, gather_point(light, solution.B, p, n, quality, key, rays[k]));
+        const Vec3 p = point_on_triangle(patches.corner_positions(i), u, v) + n * problem.rays.lift();
+        E.set(i, gather_point(light, p, n, quality, key, rays[k]));
       }
     });
   }

@@ -11,7 +11,7 @@ namespace clerestory {
 /// energy balance stays that of the shooting.
 ///
 /// returns  the number of patches gathered.
-std::size_t gather_noisy_patches(const Illumination& light, Solution& solution, double fewest,
+std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, double fewest,
                                  const GatherQuality& quality, std::uint64_t seed, const Monitor& monitor = {});
 
 }  // namespace clerestory

@@ -56,7 +56,7 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
                                        .seed = options.seed};
       Solution solution = shoot(problem, direct, closure(), shoot_options, monitor);
       const GatherQuality quality{.grid = 12, .rays = by_accuracy(options.accuracy, 144, 288, 576), .lamp_rays = 64};
-      const std::size_t gathered = gather_noisy_patches(light, solution, kFewestRays, quality, options.seed, monitor);
+      const std::size_t gathered = gather_noisy_patches(problem, solution, kFewestRays, quality, options.seed, monitor);
       solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
       return solution;
     }

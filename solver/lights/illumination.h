@@ -12,7 +12,9 @@ struct Illumination {
   LightSampler lamps;
   SkyRadiance sky;
 
-  explicit Illumination(const Problem& p) : problem(p), lamps(p), sky(p.lights) {}
+  explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}
+  /// glow: see LightSampler; outlives this.
+  Illumination(const Problem& p, const Field& glow) : problem(p), lamps(p, glow), sky(p.lights) {}
 };
 
 }  // namespace clerestory

@@ -11,12 +11,12 @@
 
 namespace clerestory {
 
-LightSampler::LightSampler(const Problem& problem) : problem_(problem) {
+LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_(problem), glow_(glow) {
   const PatchSet& patches = problem.patches;
   const std::size_t n = patches.patch_count();
   double flux = 0, area = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    flux += patches.area[i] * luminous_mean(patches.M[i]);
+    flux += patches.area[i] * luminous_mean(glow[i]);
     area += patches.area[i];
   }
   double total = 0;
@@ -28,7 +28,7 @@ LightSampler::LightSampler(const Problem& problem) : problem_(problem) {
   // Emitters first, so that their part of the cumulative table stands alone.
   const double bright = area > 0 ? kBrighter * flux / area : 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (const double M = luminous_mean(patches.M[i]); M > bright) add(Kind::patch, i, M * patches.area[i]);
+    if (const double B = luminous_mean(glow[i]); B > bright) add(Kind::patch, i, B * patches.area[i]);
   has_emitters_ = !lights_.empty();
   const double emitters_total = total;
   for (std::size_t i = 0; i < problem.lights.points.size(); ++i)
@@ -77,7 +77,7 @@ LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, doub
       if (kernel == 0) return {};
       const Vec3 d = point - p;
       const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2);
-      return {point + normal * lift, problem_.patches.M[q] * (kernel * problem_.patches.area[q] / share),
+      return {point + normal * lift, glow_[q] * (kernel * problem_.patches.area[q] / share),
               share * r2 / (cos_q * problem_.patches.area[q])};
     }
     case Kind::point: {

@@ -8,8 +8,8 @@
 
 namespace clerestory {
 
-/// A glowing patch is sampled like a light when it is brighter than kBrighter times the mean exitance of all surfaces;
-/// dimmer glow is found well enough by the bundle that looks for reflected light.
+/// A patch is sampled like a light when it is brighter than kBrighter times the mean of all surfaces; dimmer ones are
+/// found well enough by the bundle that looks for reflected light.
 inline constexpr double kBrighter = 4;
 
 /// One point of a light, as seen from where its light is asked for.
@@ -21,10 +21,13 @@ struct LightSample {
 
 class LightSampler {
  public:
-  explicit LightSampler(const Problem& problem);
+  /// glow  N x channels, what the patches send out of themselves: M for paths, which find reflected light on their way;
+  ///       B for a gather, where the sun's patch on the floor is as much of a lamp as the lamp. Outlives the sampler.
+  LightSampler(const Problem& problem, const Field& glow);
 
   bool empty() const { return lights_.empty(); }
   bool has_emitters() const { return has_emitters_; }
+  const Field& glow() const { return glow_; }
   bool is_explicit(PatchId p) const { return has_emitters_ && explicit_[p]; }
 
   /// Light `pick` in [0, 1) chosen by flux, and the point (u, v) of it, for receiver point p with normal n.
@@ -47,6 +50,7 @@ class LightSampler {
     double share, share_emitters;            ///< probability of the choice
   };
   const Problem& problem_;
+  const Field& glow_;
   std::vector<Light> lights_;
   std::vector<double> share_of_patch_;  ///< N, in proportion of all lights; empty without emitters
   std::vector<bool> explicit_;

@@ -10,15 +10,27 @@
 #include "solver/sampling.h"
 
 namespace clerestory {
+namespace {
+
+/// Half of the area of all patches glows no more than this (luminous mean).
+double area_median(const PatchSet& patches, const Field& glow) {
+  std::vector<std::pair<double, double>> by_glow;  // with area
+  double half = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    by_glow.emplace_back(luminous_mean(glow[i]), patches.area[i]);
+    half += patches.area[i] / 2;
+  }
+  std::sort(by_glow.begin(), by_glow.end());
+  for (const auto& [value, area] : by_glow)
+    if ((half -= area) <= 0) return value;
+  return 0;
+}
+
+}  // namespace
 
 LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_(problem), glow_(glow) {
   const PatchSet& patches = problem.patches;
   const std::size_t n = patches.patch_count();
-  double flux = 0, area = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    flux += patches.area[i] * luminous_mean(glow[i]);
-    area += patches.area[i];
-  }
   double total = 0;
   const auto add = [&](Kind kind, std::size_t index, double power) {
     if (!(power > 0)) return;
@@ -26,7 +38,7 @@ LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_
     total += power;
   };
   // Emitters first, so that their part of the cumulative table stands alone.
-  const double bright = area > 0 ? kBrighter * flux / area : 0;
+  const double bright = kBrighter * area_median(patches, glow);
   for (std::size_t i = 0; i < n; ++i)
     if (const double B = luminous_mean(glow[i]); B > bright) add(Kind::patch, i, B * patches.area[i]);
   has_emitters_ = !lights_.empty();

@@ -8,8 +8,9 @@
 
 namespace clerestory {
 
-/// A patch is sampled like a light when it is brighter than kBrighter times the mean of all surfaces; dimmer ones are
-/// found well enough by the bundle that looks for reflected light.
+/// A patch is sampled like a light when it is brighter than kBrighter times the median over the area of all surfaces;
+/// dimmer ones are found well enough by the bundle that looks for reflected light. The median and not the mean: a facade
+/// in the sun must not hide the sun's patch in the room behind it.
 inline constexpr double kBrighter = 4;
 
 /// One point of a light, as seen from where its light is asked for.

@@ -87,7 +87,8 @@ Solution FullMatrixSystem::iterate(std::string method, const GatherOptions& opti
   while (true) {
     const double left = relative_residual();
     log.push_back(sweep_line(method, sweeps, left));
-    if (left <= options.residual) {
+    // Of a matrix that was stopped half-way, a small residual says nothing.
+    if (left <= options.residual && F_.complete) {
       stop = StopReason::converged;
       break;
     }

@@ -188,10 +188,10 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
         next_ray[i] += count;
         ++solution.iterations;
       }
-      solution.rays += begin.back();
-      // Blocks bound the memory of rays under way.
+      // Blocks bound the memory of rays under way, and the time until the wish to stop is seen.
       constexpr std::size_t kBlock = std::size_t{1} << 21;
-      for (std::size_t first = 0; first < pieces.size();) {
+      std::size_t first = 0;
+      while (first < pieces.size() && (first == 0 || !monitor.should_stop())) {
         std::size_t last = first + 1;
         while (last < pieces.size() && begin[last + 1] - begin[first] <= kBlock) ++last;
         const std::size_t offset = begin[first];
@@ -206,6 +206,11 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
         });
         for (std::size_t k = first; k < last; ++k) deposit(light, pieces[k], part(landings, k), part(passed, k));
         first = last;
+      }
+      solution.rays += begin[first];
+      for (; first < pieces.size(); ++first) {  // not shot after all
+        const Piece& piece = pieces[first];
+        light.dB.add(piece.from, piece.flux * (piece.count / p.area[piece.from]));
       }
     }
     residual = light.flux() / emitted;

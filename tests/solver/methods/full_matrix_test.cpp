@@ -157,5 +157,15 @@ TEST_P(FullMatrixMethod, ReturnsWhatIsThereWhenInterrupted) {
   for (const double B : s.B.value) EXPECT_TRUE(std::isfinite(B) && B > 0);
 }
 
+TEST_P(FullMatrixMethod, AMatrixStoppedBeforeItsFirstFactorIsNoConvergedSolution) {
+  const PatchSet patches =
+      RoomWithBlocks{.room_cells = {4, 3, 2}, .block_cells = 1, .reflectance = 0.7, .exitance = 1}.build();
+  Monitor late;
+  late.deadline = {};
+  const FormFactorMatrix F = form_factor_matrix(patches, RayScene(patches), {}, late);
+  ASSERT_FALSE(F.complete);
+  EXPECT_EQ(solve(patches, F, Field(patches.patch_count(), 1), late).stop, StopReason::time_limit);
+}
+
 }  // namespace
 }  // namespace clerestory

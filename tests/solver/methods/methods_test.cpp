@@ -1,5 +1,7 @@
 // The loops: progressive shooting and path tracing, against answers known without them.
 
+#include <atomic>
+
 #include <gtest/gtest.h>
 
 #include "solver/lit_sides.h"
@@ -130,6 +132,23 @@ TEST(Shoot, LightThatLeavesAnOpenRoomIsCounted) {
   for (std::size_t i = 0; i < 128; ++i) on_floor += plates.patches.area[i] * s.E[i][0];
   EXPECT_NEAR(on_floor, E0, 0.01 * E0);
   EXPECT_GT(s.energy.escaped, 0.7 * s.energy.emitted);
+}
+
+TEST(Shoot, StoppedWithinARoundKeepsTheLightItDidNotShoot) {
+  // 768 patches of 4096 rays are more than one block: the lamp's first round is cut short after 2^21 of 3.1 M rays.
+  const Prepared room(cube(0.5));
+  std::atomic<bool> interrupted{false};
+  Monitor monitor;
+  monitor.interrupted = &interrupted;
+  monitor.progress = [&](std::string_view, double) { interrupted = true; };
+  const DirectLight dark = direct_light(Illumination(room.problem), {});
+  const Solution s = shoot(room.problem, dark, measure_closure(room.problem, 64, 1), {.rays_per_patch = 4096}, monitor);
+  EXPECT_EQ(s.stop, StopReason::interrupted);
+  EXPECT_LT(s.rays, 2'300'000ull);
+  EXPECT_NEAR(s.energy.imbalance(), 0, 1e-9);
+  // The ambient term stands for all that is unshot: in a closed room of one reflectance the mean is exact at any time.
+  const double E = flux(room.patches) / room.patches.total_area() / (1 - 0.5);
+  EXPECT_NEAR(mean(room.patches, s.E), E, 1e-9 * E);
 }
 
 TEST(Shoot, GivesTheSameBitsForAnyThreadCount) {

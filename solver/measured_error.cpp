@@ -1,9 +1,7 @@
 #include "solver/measured_error.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "solver/methods/path_tracer.h"
 #include "solver/model/parallel.h"
@@ -14,7 +12,7 @@
 namespace clerestory {
 namespace {
 
-enum StreamKind : std::uint64_t { kErrorPoints = 0x71, kErrorPaths = 0x72, kSensorPaths = 0x73, kPilot = 0x74 };
+enum StreamKind : std::uint64_t { kErrorPoints = 0x71, kErrorPaths = 0x72, kSensorPaths = 0x73 };
 
 /// What a measurement may cost. Paths grow like 1 / (1 - rho): a bright room gets fewer of them, at fewer points, and a
 /// wider confidence, rather than hours.
@@ -70,25 +68,6 @@ MeasuredError summarise(const std::vector<Sample>& samples) {
   std::nth_element(relative.begin(), p95, relative.end());
   error.p95_relative = *p95 * (squares > 0 ? std::sqrt(variance / squares) : 1.0);
   return error;
-}
-
-/// Fewer paths where light goes round for long, so that measuring at a reflectance of 0.9999 does not take hours. A
-/// pilot of its own decides, so the references stay unbiased, and rays decide, not seconds, so they are the same every
-/// run.
-template <class Place>
-int affordable_paths(const Illumination& light, std::size_t samples, const Place& place, int paths, std::uint64_t key) {
-  constexpr double kRaysPerPath = 32;  // what most rooms need
-  constexpr int kPilotPoints = 32, kPilotPaths = 8;
-  std::array<unsigned long long, kPilotPoints> rays{};
-  parallel_for(kPilotPoints, 1, [&](std::size_t from, std::size_t to) {
-    for (std::size_t k = from; k < to; ++k) {
-      const auto [p, n] = place(k * samples / kPilotPoints);
-      trace_paths_at_point(light, p, n, stream_key(key, k, kPilot), kPilotPaths, rays[k]);
-    }
-  });
-  const double total = static_cast<double>(std::accumulate(rays.begin(), rays.end(), 0ULL));
-  const double share = kRaysPerPath * kPilotPoints * kPilotPaths / std::max(total, 1.0);
-  return share >= 1 ? paths : std::max(16, static_cast<int>(paths * share));
 }
 
 /// Traces rays for references at place(i) = {p, n} of samples whose x is set, as many as the budget allows.

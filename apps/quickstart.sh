@@ -17,9 +17,9 @@ program=build/release/bin/clerestory
 cat <<END
 
 The result is build/office.vtp. To look at it: open it in ParaView, press Apply, and colour by
-"illuminance" or "daylight_factor"; "Backface Representation: Cull Frontface/Backface" in the
-properties lets you look into the room from outside. The daylight factors at desk height are in
-build/office.sensors.csv, the figures of the run in build/office.json.
+"illuminance" or "daylight_factor". "Backface Representation: Cull Backface" in the properties
+lets you look into the room from outside. The illuminance at desk height is in
+build/office.sensors.csv, the figures of the run are in build/office.json.
 
 Next:  $program solve data/scenes/house.json -o build/house.vtp
        $program --help

@@ -42,6 +42,7 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
   const Illumination light(problem);
   const int more = 1 << options.tighten;
   const DirectOptions direct_options{.lamp_rays = by_accuracy(options.accuracy, 16, 16, 64),
+                                     .edge_rays = by_accuracy(options.accuracy, 64, 256, 1024) * more,
                                      .sky_rays = by_accuracy(options.accuracy, 128, 256, 1024) * more,
                                      .seed = options.seed};
   const DirectLight direct = direct_light(light, direct_options, monitor);

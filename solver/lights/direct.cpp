@@ -25,41 +25,58 @@ class PatchSampler {
         corners_(problem.patches.corner_positions(PatchId{patch})),
         normal_(problem.patches.normal[patch]),
         key_(stream_key(options.seed, kLampPoints, patch)),
-        rays_(options.lamp_rays) {}
+        options_(options) {}
 
   const Vec3& normal() const { return normal_; }
   bool any_corner(const auto& predicate) const { return std::any_of(corners_.begin(), corners_.end(), predicate); }
 
   template <class Open, class End>
   Spectrum mean(const Open& open_at, const End& end_for) const {
-    const double lift = problem_.rays.lift();
-    Spectrum sum(0.0);
-    for (int first = 0; first < rays_; first += 16) {
-      SegmentPacket segments;
-      std::array<Spectrum, 16> open;
-      std::array<Vec3, 16> from, to;
-      for (int k = 0; k < 16; ++k) {
-        const auto u = sobol4(static_cast<std::uint32_t>(first + k), key_);
-        const Vec3 point = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
-        from[static_cast<std::size_t>(k)] = point;
-        to[static_cast<std::size_t>(k)] = end_for(point, u[2], u[3]);
-        open[static_cast<std::size_t>(k)] = open_at(point, to[static_cast<std::size_t>(k)]);
-        segments.set(k, point, to[static_cast<std::size_t>(k)]);
-      }
-      for (unsigned visible = problem_.rays.visible16(segments); visible; visible &= visible - 1) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(visible));
-        sum += open[k] * problem_.rays.glass_transmittance(from[k], to[k]);
-      }
-    }
-    return sum / rays_;
+    const Tally first = look(0, options_.lamp_rays, open_at, end_for);
+    const bool on_an_edge = first.visible > 0 && first.visible < first.facing;
+    if (!on_an_edge || options_.edge_rays <= options_.lamp_rays) return first.sum / options_.lamp_rays;
+    return look(options_.lamp_rays, options_.edge_rays, open_at, end_for).sum / options_.edge_rays;
   }
 
  private:
+  struct Tally {
+    Spectrum sum{0.0};
+    int facing = 0, visible = 0;
+  };
+
+  template <class Open, class End>
+  Tally look(int begin, int count, const Open& open_at, const End& end_for) const {
+    const double lift = problem_.rays.lift();
+    Tally tally;
+    for (int first = begin; first < begin + count; first += 16) {
+      SegmentPacket segments;
+      std::array<Spectrum, 16> open;
+      std::array<Vec3, 16> from, to;
+      unsigned facing = 0;
+      for (int lane = 0; lane < 16; ++lane) {
+        const auto k = static_cast<std::size_t>(lane);
+        const auto u = sobol4(static_cast<std::uint32_t>(first + lane), key_);
+        from[k] = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
+        to[k] = end_for(from[k], u[2], u[3]);
+        open[k] = open_at(from[k], to[k]);
+        segments.set(lane, from[k], to[k]);
+        if (!open[k].is_black()) facing |= 1u << lane;
+      }
+      const unsigned seen = problem_.rays.visible16(segments, static_cast<std::uint16_t>(facing));
+      tally.facing += std::popcount(facing), tally.visible += std::popcount(seen);
+      for (unsigned left = seen; left; left &= left - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(left));
+        tally.sum += open[k] * problem_.rays.glass_transmittance(from[k], to[k]);
+      }
+    }
+    return tally;
+  }
+
   const Problem& problem_;
   std::array<Vec3, 3> corners_;
   Vec3 normal_;
   std::uint64_t key_;
-  int rays_;
+  const DirectOptions& options_;
 };
 
 template <class Lamp>
@@ -143,7 +160,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   };
   if (monitor.deadline != Monitor{}.deadline) {
     // Time may run out below: no patch shall stay dark for that.
-    const DirectOptions rough{.lamp_rays = 16, .sky_rays = 16, .seed = options.seed};
+    const DirectOptions rough{.lamp_rays = 16, .edge_rays = 16, .sky_rays = 16, .seed = options.seed};
     parallel_for(n, 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) light_patch(i, rough);
     });

@@ -8,7 +8,8 @@
 namespace clerestory {
 
 struct DirectOptions {
-  int lamp_rays = 16;  ///< shadow rays from a patch to each lamp and sun, a multiple of 16
+  int lamp_rays = 16;   ///< shadow rays from a patch to each lamp and sun, a multiple of 16
+  int edge_rays = 256;  ///< fresh ones instead, where the first disagree: the patch lies on the edge of a shadow
   int sky_rays = 256;  ///< cosine rays a patch that look for the sky
   std::uint64_t seed = 1;
 };
@@ -20,7 +21,8 @@ struct DirectLight {
   unsigned long long rays = 0;
 };
 
-/// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share. With a deadline all
+/// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share. Looking twice at edges
+/// favours all lit and all dark alike, by less than 0.03 of a patch, which cancels along an edge. With a deadline all
 /// patches get a rough value first, in case it comes before the good ones are done.
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {});
 

@@ -1,6 +1,7 @@
 // clerestory solve: the main job, from a model and its light to a picture of where the light goes.
 
 #include <chrono>
+#include <new>
 
 #include <CLI/CLI.hpp>
 
@@ -44,13 +45,28 @@ class Lap {
   Clock::time_point begin_ = Clock::now();
 };
 
+std::optional<MeasuredError> if_measured(const MeasuredError& error) {
+  return error.samples > 0 ? std::optional(error) : std::nullopt;
+}
+
+/// Every sensor gets its row, however little time there is: a rough one when the good ones take too long.
+PointIrradiance gather_all_sensors(const Problem& problem, const Solution& solution,
+                                   std::span<const SensorPoint> sensors, SolveOptions options, const Monitor& monitor) {
+  PointIrradiance at_sensors = gather_at_sensors(problem, solution, sensors, options, monitor);
+  if (at_sensors.complete) return at_sensors;
+  options.accuracy = Accuracy::draft;
+  return gather_at_sensors(problem, solution, sensors, options, {.progress = monitor.progress});
+}
+
 /// The data flow of the README: surfaces -> patches -> solution -> field on vertices and at sensors -> its error.
-Solved solve_scene(const Scene& scene, const Settings& settings, std::span<const SensorPoint> sensors,
-                   RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
+/// Nothing when Ctrl-C came before there were patches to solve.
+std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, std::span<const SensorPoint> sensors,
+                                  RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
   Lap lap;
   auto [patches, repairs] = build_patches(scene, settings.mesh, monitor);
   patches.channels = settings.channels;
   lap.add_to(seconds.mesh);
+  if (monitor.is_interrupted()) return {};
 
   const RayScene rays(patches);
   const Lights lights = to_local_frame(scene.lights, patches.origin);
@@ -73,53 +89,51 @@ Solved solve_scene(const Scene& scene, const Settings& settings, std::span<const
   average_to_points(patches, solution.E, lightmap);
   if (settings.solve.accuracy != Accuracy::draft && !monitor.should_stop())
     solution.rays += gather_at_points(problem, solution, lightmap, settings.solve, monitor);
-  if (monitor.should_stop() && solution.stop == StopReason::converged)
-    solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
-
-  // Every sensor gets its row, however little time there is.
-  SolveOptions sensor_options = settings.solve;
-  if (monitor.should_stop()) sensor_options.accuracy = Accuracy::draft;
-  PointIrradiance at_sensors =
-      gather_at_sensors(problem, solution, sensors, sensor_options, {.progress = monitor.progress});
+  PointIrradiance at_sensors = gather_all_sensors(problem, solution, sensors, settings.solve, monitor);
   solution.rays += at_sensors.rays;
+  if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
   lap.add_to(seconds.reconstruct);
 
   std::optional<MeasuredError> error, error_sensors;
-  if (!monitor.should_stop()) error = measure_error(problem, lightmap, settings.solve, monitor);
+  if (!monitor.should_stop()) error = if_measured(measure_error(problem, lightmap, settings.solve, monitor));
   if (!monitor.should_stop() && !sensors.empty())
-    error_sensors = measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, monitor);
+    error_sensors = if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, monitor));
+  if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
   lap.add_to(seconds.measure);
-  return {std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),
-          std::move(at_sensors.E), error,   error_sensors};
+  return Solved{std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),
+                std::move(at_sensors.E), error,   error_sensors};
 }
 
 bool meets(const Solved& solved, double target) { return solved.error && solved.error->rms_relative <= target; }
 
-/// Solves once, or as often as the target error asks for; settings end as they were for the result returned.
-Solved solve_to_target(const Scene& scene, Settings& settings, std::span<const SensorPoint> sensors,
-                       RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
+/// Solves once, or as often as the target error asks for; settings end as they were for the result returned, the best.
+std::optional<Solved> solve_to_target(const Scene& scene, Settings& settings, std::span<const SensorPoint> sensors,
+                                      RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
   constexpr int kRounds = 5;  // the last has 16 times the elements of the first
-  Solved best = solve_scene(scene, settings, sensors, seconds, console, monitor);
-  if (!settings.target_error) return best;
-  for (int round = 1; round < kRounds && !meets(best, *settings.target_error) && !monitor.should_stop(); ++round) {
-    Settings finer = settings;
-    finer.tighten(best.repairs.max_element);
-    console.note("error " + percent(best.error ? best.error->rms_relative : 1) + ", asked for " +
-                 percent(*settings.target_error) + ": again with elements of " + rounded(*finer.mesh.max_element) +
-                 " m and twice the rays");
+  std::optional<Solved> best = solve_scene(scene, settings, sensors, seconds, console, monitor);
+  if (!best || !settings.target_error) return best;
+  const double target = *settings.target_error;
+  Settings finer = settings;
+  for (int round = 1; round < kRounds && !meets(*best, target) && !monitor.should_stop(); ++round) {
+    finer.tighten(finer.mesh.max_element.value_or(best->repairs.max_element));
+    console.note("error " + percent(best->error ? best->error->rms_relative : 1) + ", asked for " + percent(target) +
+                 ": again with elements of " + rounded(*finer.mesh.max_element) + " m and twice the rays");
+    // What is solved already must not be lost to a try that needs too much.
     try {
-      Solved next = solve_scene(scene, finer, sensors, seconds, console, monitor);
-      if (!next.error || (best.error && next.error->rms_relative > best.error->rms_relative)) {
-        best.solution.stop = next.solution.stop;
-        break;
-      }
+      std::optional<Solved> next = solve_scene(scene, finer, sensors, seconds, console, monitor);
+      if (!next || !next->error || (best->error && next->error->rms_relative > best->error->rms_relative)) continue;
       best = std::move(next);
       settings = finer;
     } catch (const InputError& e) {
       console.warn(std::string("the target error would need more than this: ") + e.what());
       break;
+    } catch (const std::bad_alloc&) {
+      console.warn("the target error would need more memory than there is.");
+      break;
     }
   }
+  if (monitor.should_stop() && !meets(*best, target))
+    best->solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
   return best;
 }
 
@@ -177,7 +191,13 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
       settings.time_limit
           ? start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*settings.time_limit))
           : Clock::time_point::max();
-  const Solved solved = solve_to_target(scene, settings, sensors, report.seconds, console, console.monitor(deadline));
+  const std::optional<Solved> result =
+      solve_to_target(scene, settings, sensors, report.seconds, console, console.monitor(deadline));
+  if (!result) {
+    console.warn("interrupted before anything was solved; nothing is written.");
+    return kInterrupted;
+  }
+  const Solved& solved = *result;
   for (const std::string& line : solved.solution.log) console.note(line);
 
   Lap writing;

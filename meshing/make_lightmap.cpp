@@ -3,33 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
-#include "solver/model/parallel.h"
+#include "solver/model/disjoint_sets.h"
 
 namespace clerestory {
 namespace {
 
 /// Corner k of patch p is 3 p + k, counted as the triangle's corners are, whichever side p is.
 using Corner = std::uint32_t;
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// The lower index becomes the root, so that numbers follow the order of patches.
-  void join(std::uint32_t i, std::uint32_t j) {
-    i = root(i);
-    j = root(j);
-    if (i != j) parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct HalfEdge {
   std::uint32_t low, high;  ///< vertices
@@ -112,7 +93,7 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
   });
 
   const double least_cosine = std::cos(crease_deg * std::numbers::pi / 180);
-  UnionFind shared(3 * count);
+  DisjointSets shared(3 * count);
   std::vector<Blade> blades;
   for (std::size_t begin = 0; begin < edges.size();) {
     std::size_t end = begin + 1;
@@ -152,7 +133,7 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
     std::array<Vec3, 3> x;
     for (std::size_t k = 0; k < 3; ++k) x[k] = patches.vertices[patches.corners[t][k]];
     for (std::uint32_t k = 0; k < 3; ++k) {
-      std::uint32_t& point = point_of[shared.root(3 * p + k)];
+      std::uint32_t& point = point_of[shared.find(3 * p + k)];
       if (point == kNone) {
         point = static_cast<std::uint32_t>(map.position.size());
         map.position.push_back(x[k]);

@@ -2,10 +2,10 @@
 
 #include <array>
 
+#include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/sampling.h"
-#include "solver/spaces.h"
 
 namespace clerestory {
 
@@ -38,7 +38,7 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
     }
   });
 
-  Spaces spaces(n);
+  DisjointSets spaces(n);
   for (std::size_t i = 0; i < n; ++i)
     for (const PatchId q : neighbours[i])
       if (q.valid()) spaces.join(i, q);

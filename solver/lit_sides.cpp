@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "solver/lights/sun.h"
+#include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/sampling.h"
-#include "solver/spaces.h"
 
 namespace clerestory {
 namespace {
@@ -67,7 +67,7 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed) {
   // Enough rays in all that a space of few large patches is not taken apart by chance.
   const int ray_count = 16 * static_cast<int>(std::clamp<std::size_t>((1 << 15) / std::max<std::size_t>(n, 1), 1, 16));
 
-  Spaces spaces(n);
+  DisjointSets spaces(n);
   std::vector<bool> lit(n, false);
   std::vector<char> sees_a_surface(n, 0);
   constexpr std::size_t kBlock = 1 << 14;

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "solver/form_factors/polygon.h"
+#include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
-#include "solver/spaces.h"
 
 namespace clerestory {
 namespace {
@@ -169,7 +169,7 @@ void Blockers::find_screens(const PatchSet& patches, const std::vector<std::uint
     if (a.high != b.high) return before(a.high, b.high);
     return a.triangle < b.triangle;
   });
-  Spaces joined(patches.triangle_count());
+  DisjointSets joined(patches.triangle_count());
   for (std::size_t k = 1; k < sides.size(); ++k) {
     const SharedEdge &a = sides[k - 1], &b = sides[k];
     if (a.low == b.low && a.high == b.high && length(cross(normal[a.triangle], normal[b.triangle])) < 1e-9)

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
-#include "solver/spaces.h"
 
 namespace clerestory {
 namespace {
@@ -52,7 +52,7 @@ FullMatrixSystem::FullMatrixSystem(const PatchSet& patches, const FormFactorMatr
   for (std::size_t k = 0; k < channel_count; ++k)
     for (std::size_t i = 0; i < n_; ++i) source[k][i] += rho[k][i] * E_direct.at(i, static_cast<int>(k));
 
-  Spaces joined(n_);
+  DisjointSets joined(n_);
   for (std::size_t i = 0; i < n_; ++i) {
     const auto row = F.row(i);
     for (std::size_t j = i + 1; j < n_; ++j)

@@ -1,5 +1,5 @@
 #pragma once
-// Patches that see each other, directly or over others.
+// Numbers joined into sets: patches that see each other, corners that share a point.
 
 #include <algorithm>
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace clerestory {
 
-/// Disjoint sets of patch numbers; a space is named by its smallest patch.
-class Spaces {
+/// Disjoint sets of 0 .. n - 1; a set is named by its smallest member, so names follow the order of the numbers.
+class DisjointSets {
  public:
-  explicit Spaces(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
 
   std::size_t find(std::size_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];

@@ -32,6 +32,7 @@ void add_common_options(CLI::App& command, CommonArguments& arguments) {
   command.add_option("--threads", arguments.threads, "0 = all cores; never changes the result (default: 0)")
       ->type_name("N")
       ->check(silent(thread_number));
+  command.add_option("--seed", arguments.seed, "of all random numbers (default: 1)")->type_name("N");
   command.add_flag("--quiet", arguments.quiet, "no progress and no summary; errors and warnings only");
   command.add_flag("--verbose", arguments.verbose, "say more: a line for each round of the solver");
   command.add_option("--log", arguments.log, "also write all messages here, with the time")->type_name("FILE");

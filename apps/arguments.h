@@ -1,6 +1,7 @@
 #pragma once
 // Options that several commands share.
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,12 +16,13 @@ class App;
 namespace clerestory {
 
 struct CommonArguments {
-  int threads = 0;  ///< 0: all cores
+  int threads = 0;                    ///< 0: all cores
+  std::optional<std::uint64_t> seed;  ///< of all random numbers; empty: the scene file's, or 1
   bool quiet = false, verbose = false;
   std::string log, report;  ///< files; empty when not asked for
 };
 
-/// --threads, --quiet, --verbose, --log, --report
+/// --threads, --seed, --quiet, --verbose, --log, --report
 void add_common_options(CLI::App& command, CommonArguments& arguments);
 
 /// INPUT, --unit, --up, --sky

@@ -40,7 +40,7 @@ std::string problem_with_method(const std::string& name) {
 
 std::string problem_with_accuracy(const std::string& name) { return problem_with(name, kAccuracyNames, "accuracy"); }
 
-Settings effective_settings(const SolveArguments& arguments, const Scene& scene) {
+Settings effective_settings(const CommonArguments& common, const SolveArguments& arguments, const Scene& scene) {
   const SolverSettings& file = scene.settings;
   Settings s;
   if (const auto name = first_of(arguments.method, file.method)) {
@@ -51,7 +51,7 @@ Settings effective_settings(const SolveArguments& arguments, const Scene& scene)
     refuse_if(scene.file, problem_with_accuracy(*name));
     s.solve.accuracy = named<Accuracy>(*name, kAccuracyNames);
   }
-  s.solve.seed = first_of(arguments.seed, file.seed).value_or(s.solve.seed);
+  s.solve.seed = first_of(common.seed, file.seed).value_or(s.solve.seed);
   s.mesh.max_element = first_of(arguments.max_element, file.max_element);
   s.mesh.target_triangles = target_triangles(s.solve.accuracy);
   s.target_error = first_of(arguments.target_error, file.target_error);

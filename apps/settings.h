@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/arguments.h"
 #include "io/read_scene.h"
 #include "io/run_report.h"
 #include "meshing/build_patches.h"
@@ -16,7 +17,6 @@ namespace clerestory {
 struct SolveArguments {
   std::optional<std::string> method, accuracy, channels;
   std::optional<double> max_element, target_error, time_limit;
-  std::optional<std::uint64_t> seed;
   bool grey = false;
 };
 
@@ -36,7 +36,7 @@ std::string problem_with_method(const std::string& name);
 std::string problem_with_accuracy(const std::string& name);
 
 /// throws  InputError naming the method or accuracy that is not known, and the nearest one.
-Settings effective_settings(const SolveArguments& arguments, const Scene& scene);
+Settings effective_settings(const CommonArguments& common, const SolveArguments& arguments, const Scene& scene);
 
 /// The settings as the report and the result name them.
 std::vector<Figure> as_figures(const Settings& settings, const ReadOptions& read);

@@ -69,7 +69,7 @@ void say_lights(const Scene& scene, Console& console) {
 
 ExitCode check_command(const Arguments& arguments, Console& console) {
   const Scene scene = read_scene(arguments.input, arguments.read);
-  const Settings settings = effective_settings(arguments.solve, scene);
+  const Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   warn_about_scene(scene, console);
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();
@@ -80,7 +80,7 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   const RayScene rays(patches);
   const Lights lights = to_local_frame(scene.lights, patches.origin);
   const Problem problem{patches, rays, lights};
-  if (has_light(scene)) make_patches(patches, find_lit_sides(problem).wanted);
+  if (has_light(scene)) make_patches(patches, find_lit_sides(problem, settings.solve.seed).wanted);
   const std::vector<SensorPoint> sensors = all_sensor_points(scene);
   warn_about_places(problem, scene, sensors, console);
 

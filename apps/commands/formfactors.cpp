@@ -26,7 +26,7 @@ struct Arguments {
   ReadOptions read;
   std::string input, output;
   std::optional<std::string> by;
-  SurfaceFactorOptions factors;
+  int samples = SurfaceFactorOptions{}.samples;
 };
 
 constexpr std::array<std::string_view, 4> kGroupNames{"object", "material", "surface", "patch"};  // as in GroupBy
@@ -117,13 +117,14 @@ ExitCode formfactors_command(const Arguments& arguments, Console& console) {
     throw InputError(arguments.input +
                      ": no face has an area, so there are no form factors; check the model's export.");
   const PatchGroups groups = group_patches(patches, group_by(arguments));
-  constexpr std::size_t kMostGroups = 10'000;
+  constexpr std::size_t kMostGroups = 3'000;  // nine million rows, of about 100 bytes each in memory
   if (groups.name.size() > kMostGroups)
     throw InputError(arguments.input + ": " + counted(groups.name.size(), "group") + " would make " +
                      std::to_string(groups.name.size() * groups.name.size()) + " rows; at most " +
                      std::to_string(kMostGroups) + " groups are written. Use --by object or --by material.");
   const RayScene rays(patches);
-  const SurfaceFactors factors = surface_form_factors(patches, rays, groups, arguments.factors, console.monitor());
+  const SurfaceFactorOptions options{.samples = arguments.samples, .seed = arguments.common.seed.value_or(1)};
+  const SurfaceFactors factors = surface_form_factors(patches, rays, groups, options, console.monitor());
   if (!factors.complete) {
     console.warn("interrupted before the factors were complete; nothing is written.");
     return kInterrupted;
@@ -168,11 +169,10 @@ void add_formfactors_command(CLI::App& program, Task& task) {
                    "object, material, surface (the faces of an object in one plane) or patch (each triangle) "
                    "(default: object)");
   command
-      .add_option("--samples", arguments->factors.samples,
+      .add_option("--samples", arguments->samples,
                   "rays for each pair of triangles with something in between (default: 16384)")
       ->type_name("N")
       ->check(CLI::Range(256, 1 << 24).description(""));
-  command.add_option("--seed", arguments->factors.seed, "of the random streams (default: 1)")->type_name("N");
   add_common_options(command, arguments->common);
   command.footer("example: clerestory formfactors data/scenes/plates.obj -o factors.csv --by object");
   command.callback([arguments, &task] {

@@ -23,17 +23,17 @@ struct Arguments {
 };
 
 /// With light in the scene, the sides it can reach; without, both sides of everything.
-LitSides sides_to_show(const Scene& scene, const PatchSet& patches) {
+LitSides sides_to_show(const Scene& scene, const PatchSet& patches, std::uint64_t seed) {
   if (!has_light(scene)) return {std::vector<bool>(2 * patches.triangle_count(), true)};
   const RayScene rays(patches);
   const Lights lights = to_local_frame(scene.lights, patches.origin);
-  return find_lit_sides({patches, rays, lights});
+  return find_lit_sides({patches, rays, lights}, seed);
 }
 
 ExitCode mesh_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.input, arguments.read);
-  const Settings settings = effective_settings(arguments.solve, scene);
+  const Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   warn_about_scene(scene, console);
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();
@@ -44,7 +44,7 @@ ExitCode mesh_command(const Arguments& arguments, Console& console) {
     return kInterrupted;
   }
   report.seconds.mesh = console.elapsed() - report.seconds.read;
-  const LitSides lit = sides_to_show(scene, patches);
+  const LitSides lit = sides_to_show(scene, patches, settings.solve.seed);
   make_patches(patches, lit.wanted);
 
   report.settings = as_figures(settings, arguments.read);

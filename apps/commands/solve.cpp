@@ -173,7 +173,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   Lap lap;
   Scene scene = read_scene(arguments.input, arguments.read);
   if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
-  Settings settings = effective_settings(arguments.solve, scene);
+  Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   if (settings.channels == 1) make_grey(scene);
   warn_about_scene(scene, console);
   require_light(scene);
@@ -239,7 +239,6 @@ void add_solve_command(CLI::App& program, Task& task) {
   add_positive_option(command, "--time-limit", s.time_limit, "S", "stop solving after so many seconds");
   add_positive_option(command, "--max-element", s.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
-  command.add_option("--seed", s.seed, "of all random numbers (default: 1)")->type_name("N");
   command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")
       ->type_name("POINTS.csv");
   command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")

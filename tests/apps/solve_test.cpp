@@ -293,6 +293,26 @@ TEST(TargetError, IsReachedByRefiningOrSaidToBeMissed) {
   EXPECT_GT(read_result(folder / "out.vtp").triangles.size(), 0u);
 }
 
+TEST(EveryCommand, TakesTheCommonOptions) {
+  const std::vector<std::vector<std::string>> commands = {
+      {"solve", shipped_scene("parallel_plates.json"), "-o", "out.vtp", "--accuracy", "draft"},
+      {"check", shipped_scene("parallel_plates.json")},
+      {"mesh", shipped_scene("parallel_plates.json"), "-o", "out.vtp"},
+      {"formfactors", shipped_scene("parallel_plates.json"), "-o", "out.csv"}};
+  for (auto arguments : commands) {
+    SCOPED_TRACE(arguments[0]);
+    const TempFolder folder;
+    if (arguments.size() > 3) arguments[3] = folder / arguments[3];
+    arguments.insert(arguments.end(), {"--threads", "1", "--seed", "7", "--quiet", "--log", folder / "run.log",
+                                       "--report", folder / "report.json"});
+    const ProgramRun run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out + run.err, "");
+    EXPECT_EQ(Json::parse(read_text(folder / "report.json"))["settings"]["threads"], 1);
+    EXPECT_GT(read_text(folder / "run.log").size(), 0u);
+  }
+}
+
 TEST(Check, TellsWhatIsThereAndSolvesNothing) {
   const ProgramRun run = run_program({"check", shipped_scene("house.json")});
   EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -59,6 +59,7 @@ void Console::note(const std::string& line) {
 void Console::on_progress(std::string_view stage, double done) {
   const double now = elapsed();
   if (stages_.empty() || stages_.back().name != stage) {
+    if (!stages_.empty()) stages_.back().end = now;  // the last report of a stage comes before its last stretch of work
     stages_.push_back({std::string(stage), now, now});
     log("", std::string(stage));
   }

@@ -47,6 +47,7 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
                                      .seed = options.seed};
   const DirectLight direct = direct_light(light, direct_options, monitor);
   const auto closure = [&] {
+    monitor.report("closure", 0);
     const int rays = monitor.should_stop() ? 16 : by_accuracy(options.accuracy, 32, 64, 128);
     return measure_closure(problem, rays, options.seed);
   };

@@ -145,7 +145,7 @@ SampledVisibility sample_visibility_quick(const SampledTriangle& p, const Sample
     sampler.trace(cube, shift);
     for (std::size_t k = 0; k < kLanes; ++k) {
       const double w = sampler.kernel[k], v = sampler.share[k];
-      if (w <= 0) continue;
+      if (!(w > 0)) continue;  // nor a NaN: two points on one spot of an edge
       ++samples;
       least = std::min(least, sampler.share[k]), most = std::max(most, sampler.share[k]);
       weight += w, passed += w * v;
@@ -176,7 +176,7 @@ SampledVisibility sample_visibility(const SampledTriangle& p, const SampledTrian
       }
       sampler.trace(cube, {0, 0, 0, 0});
       for (std::size_t k = 0; k < kLanes; ++k) {
-        if (sampler.kernel[k] <= 0) continue;
+        if (!(sampler.kernel[k] > 0)) continue;
         ++counted;
         least = std::min(least, sampler.share[k]), most = std::max(most, sampler.share[k]);
         weight[set] += sampler.kernel[k], passed[set] += double{sampler.kernel[k]} * sampler.share[k];

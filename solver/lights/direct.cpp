@@ -32,10 +32,14 @@ class PatchSampler {
 
   template <class Open, class End>
   Spectrum mean(const Open& open_at, const End& end_for) const {
-    const Tally first = look(0, options_.lamp_rays, open_at, end_for);
-    const bool on_an_edge = first.visible > 0 && first.visible < first.facing;
-    if (!on_an_edge || options_.edge_rays <= options_.lamp_rays) return first.sum / options_.lamp_rays;
-    return look(options_.lamp_rays, options_.edge_rays, open_at, end_for).sum / options_.edge_rays;
+    if (options_.edge_rays <= options_.lamp_rays)
+      return look(key_, options_.lamp_rays, open_at, end_for).sum / options_.lamp_rays;
+    // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
+    // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
+    const Tally pilot = look(mix_bits(key_), options_.lamp_rays, open_at, end_for);
+    const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
+    const int rays = on_an_edge ? options_.edge_rays : options_.lamp_rays;
+    return look(key_, rays, open_at, end_for).sum / rays;
   }
 
  private:
@@ -45,17 +49,17 @@ class PatchSampler {
   };
 
   template <class Open, class End>
-  Tally look(int begin, int count, const Open& open_at, const End& end_for) const {
+  Tally look(std::uint64_t key, int count, const Open& open_at, const End& end_for) const {
     const double lift = problem_.rays.lift();
     Tally tally;
-    for (int first = begin; first < begin + count; first += 16) {
+    for (int first = 0; first < count; first += 16) {
       SegmentPacket segments;
       std::array<Spectrum, 16> open;
       std::array<Vec3, 16> from, to;
       unsigned facing = 0;
       for (int lane = 0; lane < 16; ++lane) {
         const auto k = static_cast<std::size_t>(lane);
-        const auto u = sobol4(static_cast<std::uint32_t>(first + lane), key_);
+        const auto u = sobol4(static_cast<std::uint32_t>(first + lane), key);
         from[k] = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
         to[k] = end_for(from[k], u[2], u[3]);
         open[k] = open_at(from[k], to[k]);

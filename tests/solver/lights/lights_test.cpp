@@ -116,5 +116,29 @@ TEST(DirectLight, OfTheSunIsItsNormalIlluminanceTimesTheCosineWhereNothingShades
   EXPECT_NEAR(on_floor, 800 * (100 - 4), 800 * 4 * 0.01);
 }
 
+TEST(DirectLight, OfTheSunThroughASmallHoleLosesNothingOnCoarsePatches) {
+  // The spot of 0.3 x 0.3 m covers 3 % of a floor patch: most first looks miss it, and must not count as dark for that.
+  test::PatchBuilder b;
+  b.rectangle({0, 0, 0}, {10, 0, 0}, {0, 10, 0}, 4, 4);
+  b.rectangle({0, 0, 0.2}, {10, 0, 0}, {0, 4, 0}).rectangle({0, 4.3, 0.2}, {10, 0, 0}, {0, 5.7, 0});
+  b.rectangle({0, 4, 0.2}, {4, 0, 0}, {0, 0.3, 0}).rectangle({4.3, 4, 0.2}, {5.7, 0, 0}, {0, 0.3, 0});
+  const PatchSet patches = b.build();
+  const RayScene rays(patches);
+  Lights lights;
+  lights.suns.push_back({{0, 0, 1}, Spectrum(800)});
+  const Problem problem{patches, rays, lights};
+  const Illumination light(problem);
+  double sum = 0, sum_of_squares = 0;
+  constexpr int kSeeds = 2000;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const DirectLight direct = direct_light(light, {.seed = static_cast<std::uint64_t>(seed)});
+    double on_floor = 0;
+    for (std::size_t i = 0; i < 32; ++i) on_floor += patches.area[i] * direct.E[i][0];
+    sum += on_floor / kSeeds, sum_of_squares += on_floor * on_floor / kSeeds;
+  }
+  const double std_error = std::sqrt((sum_of_squares - sum * sum) / (kSeeds - 1));
+  EXPECT_NEAR(sum, 800 * 0.3 * 0.3, 4 * std_error);
+}
+
 }  // namespace
 }  // namespace clerestory

@@ -132,8 +132,7 @@ std::optional<Solved> solve_to_target(const Scene& scene, Settings& settings, st
       break;
     }
   }
-  if (monitor.should_stop() && !meets(*best, target))
-    best->solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+  if (monitor.should_stop() && !meets(*best, target)) best->solution.stop = why_stopped(monitor);
   return best;
 }
 

@@ -93,7 +93,7 @@ Solution FullMatrixSystem::iterate(std::string method, const GatherOptions& opti
       break;
     }
     if (!F_.complete || monitor.should_stop()) {
-      stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+      stop = why_stopped(monitor);
       break;
     }
     if (sweeps >= options.max_sweeps) break;

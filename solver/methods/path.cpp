@@ -28,7 +28,7 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
     for (std::size_t begin = 0; begin < n; begin += kBlock) {
       // The first round is finished whatever the clock says: every patch needs a value.
       if (monitor.is_interrupted() || (done > 0 && monitor.is_late())) {
-        solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+        solution.stop = why_stopped(monitor);
         break;
       }
       monitor.report("paths", (done + kRound * static_cast<double>(begin) / static_cast<double>(n)) / options.paths);

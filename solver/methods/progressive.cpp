@@ -166,7 +166,7 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
       break;
     }
     if (monitor.should_stop()) {
-      solution.stop = monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+      solution.stop = why_stopped(monitor);
       break;
     }
     monitor.report("shoot", std::log(first_residual / residual) / std::log(first_residual / options.stop_fraction));

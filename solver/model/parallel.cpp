@@ -4,7 +4,6 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
 namespace clerestory {
@@ -19,11 +18,6 @@ void set_thread_count(int threads) {
   if (threads > 0)
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                   static_cast<std::size_t>(threads));
-}
-
-int thread_count() {
-  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return std::min(static_cast<int>(allowed), tbb::info::default_concurrency());
 }
 
 void on_one_thread(const std::function<void()>& body) {

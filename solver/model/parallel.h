@@ -8,7 +8,6 @@ namespace clerestory {
 
 /// Threads used from now on by the whole process; 0 means all cores.
 void set_thread_count(int threads);
-int thread_count();
 
 /// Calls body() while nothing in the process uses more than one thread: for libraries whose parallel loops would leave
 /// traces in the result.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/model/channels.h"
+#include "solver/model/monitor.h"
 
 namespace clerestory {
 
@@ -20,6 +21,11 @@ struct EnergyBalance {
 
 enum class StopReason { converged, time_limit, interrupted, iteration_limit };
 
+/// Of work that stopped because the monitor said so.
+inline StopReason why_stopped(const Monitor& monitor) {
+  return monitor.is_interrupted() ? StopReason::interrupted : StopReason::time_limit;
+}
+
 struct Solution {
   std::string method;
   Field E;          ///< N, mean irradiance of each patch, ambient included [W/m2]
@@ -30,7 +36,7 @@ struct Solution {
   long iterations = 0;  ///< shots, sweeps or paths, as the method counts
   double residual = 0;  ///< unshot or changed flux / emitted flux [1]
   unsigned long long rays = 0;
-  double flux_per_ray = 0;  ///< carried by a ray of a shot; sets the noise of shooting [W]
+  double flux_per_ray = 0;       ///< carried by a ray of a shot; sets the noise of shooting [W]
   std::vector<std::string> log;  ///< a line a round, for --verbose
 };
 

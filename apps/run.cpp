@@ -1,6 +1,7 @@
 #include "apps/run.h"
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <optional>
@@ -9,7 +10,19 @@
 
 namespace clerestory {
 
-ExitCode run(const CommonArguments& arguments, const std::function<ExitCode(Console&)>& work) {
+namespace {
+
+/// A slip of the pen must not cost the user a scene.
+void refuse_to_overwrite(const std::string& input, const std::string& option, const std::string& output) {
+  std::error_code not_there;
+  if (!output.empty() && std::filesystem::equivalent(input, output, not_there))
+    throw InputError(option + " " + output + ": is the input; choose another file for it.");
+}
+
+}  // namespace
+
+ExitCode run(const CommonArguments& arguments, const std::string& input,
+             const std::function<ExitCode(Console&)>& work) {
   std::optional<Console> console;
   const auto fail = [&](const std::string& message, ExitCode code) {
     if (console)
@@ -19,6 +32,8 @@ ExitCode run(const CommonArguments& arguments, const std::function<ExitCode(Cons
     return code;
   };
   try {
+    refuse_to_overwrite(input, "--log", arguments.log);
+    refuse_to_overwrite(input, "--report", arguments.report);
     console.emplace(arguments);
     return work(*console);
   } catch (const InputError& e) {

@@ -8,6 +8,6 @@
 
 namespace clerestory {
 
-ExitCode run(const CommonArguments& arguments, const std::function<ExitCode(Console&)>& work);
+ExitCode run(const CommonArguments& arguments, const std::string& input, const std::function<ExitCode(Console&)>& work);
 
 }  // namespace clerestory

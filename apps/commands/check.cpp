@@ -113,7 +113,8 @@ void add_check_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory check data/scenes/house.json");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, [&](Console& console) { return check_command(*arguments, console); });
+      return run(arguments->common, arguments->input,
+                 [&](Console& console) { return check_command(*arguments, console); });
     };
   });
 }

@@ -177,7 +177,8 @@ void add_formfactors_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory formfactors data/scenes/plates.obj -o factors.csv --by object");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, [&](Console& console) { return formfactors_command(*arguments, console); });
+      return run(arguments->common, arguments->input,
+                 [&](Console& console) { return formfactors_command(*arguments, console); });
     };
   });
 }

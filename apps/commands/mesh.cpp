@@ -84,7 +84,8 @@ void add_mesh_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory mesh data/scenes/house.json -o patches.vtp --max-element 0.25");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, [&](Console& console) { return mesh_command(*arguments, console); });
+      return run(arguments->common, arguments->input,
+                 [&](Console& console) { return mesh_command(*arguments, console); });
     };
   });
 }

@@ -248,7 +248,8 @@ void add_solve_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory solve data/scenes/office.json -o office.vtp --accuracy fine");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, [&](Console& console) { return solve_command(*arguments, console); });
+      return run(arguments->common, arguments->input,
+                 [&](Console& console) { return solve_command(*arguments, console); });
     };
   });
 }

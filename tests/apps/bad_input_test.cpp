@@ -71,6 +71,13 @@ TEST_F(BadUsage, AnOutputThatCannotBeWrittenIsRefusedBeforeSolving) {
   expect_refusal(with({"-o", out_, "--log", folder_ / "no/run.log"}), 3, {"run.log"});
 }
 
+TEST_F(BadUsage, TheReportOrLogOverTheSceneIsRefusedAndTheSceneStays) {
+  const std::string before = read_text(scene_);
+  expect_refusal({"solve", scene_, "-o", out_, "--report", scene_}, 3, {"--report", "is the input"});
+  expect_refusal({"check", scene_, "--log", folder_ / "./room.json"}, 3, {"--log", "is the input"});
+  EXPECT_EQ(read_text(scene_), before);
+}
+
 class BadInput : public testing::Test {
  protected:
   TempFolder folder_;

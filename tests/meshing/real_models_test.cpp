@@ -1,6 +1,5 @@
 // Models as people have them; skipped where they are not at hand.
 
-#include <chrono>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -27,15 +26,12 @@ TEST_P(RealModel, GivesASoundMeshOfABoundedSize) {
       std::filesystem::path(CLERESTORY_SOURCE_DIR) / "../shared/data/models" / GetParam().file;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
   const Scene scene = read_scene(file);
-  const auto start = std::chrono::steady_clock::now();
   const auto [p, report] = build_patches(scene);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(t_vertices(p), 0u);
   EXPECT_EQ(coincident_triangles(p), 0u);
   EXPECT_LE(report.longest_edge, report.max_element * (1 + 1e-9));
   EXPECT_GE(p.triangle_count(), GetParam().fewest);
   EXPECT_LE(p.triangle_count(), GetParam().most);
-  EXPECT_LT(seconds.count(), 8);  // measured 0.5 s for the largest; slow machines and checks of memory take longer
   const VertexLightmap map = make_lightmap(p);
   EXPECT_EQ(map.corners.size(), p.patch_count());
 }

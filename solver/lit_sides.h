@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/model/monitor.h"
 #include "solver/problem.h"
 
 namespace clerestory {
@@ -19,7 +20,10 @@ struct LitSides {
 /// dropped too when its light meets no other surface (the outside of a glowing room), or only the inside of the same
 /// lamp body while the body's outside lights a space with other surfaces.
 ///
+/// Where lamps are the only light of an open scene, each side looks for them by shadow rays of its own. When the
+/// monitor stops the search, all sides not looked at take part.
+///
 /// problem  with all sides as patches, as build_patches() leaves them.
-LitSides find_lit_sides(const Problem& problem, std::uint64_t seed = 0);
+LitSides find_lit_sides(const Problem& problem, std::uint64_t seed = 0, const Monitor& monitor = {});
 
 }  // namespace clerestory

@@ -90,22 +90,22 @@ LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, doub
       const Vec3 d = point - p;
       const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2);
       return {point + normal * lift, glow_[q] * (kernel * problem_.patches.area[q] / share),
-              share * r2 / (cos_q * problem_.patches.area[q])};
+              share * r2 / (cos_q * problem_.patches.area[q]), q};
     }
     case Kind::point: {
       const PointLuminaire& lamp = problem_.lights.points[light->index];
-      return {lamp.position, open_irradiance(lamp, p, n) / share, 0};
+      return {lamp.position, open_irradiance(lamp, p, n) / share, 0, {}};
     }
     case Kind::spot: {
       const SpotLuminaire& lamp = problem_.lights.spots[light->index];
-      return {lamp.position, open_irradiance(lamp, p, n) / share, 0};
+      return {lamp.position, open_irradiance(lamp, p, n) / share, 0, {}};
     }
     case Kind::sun: {
       const Sun& sun = problem_.lights.suns[light->index];
       const Vec3 d = direction_to_sun(sun, u, v);
       const double cos_n = dot(n, d);
       if (!(cos_n > 0)) return {};
-      return {p + d * (4 * problem_.rays.diameter()), sun.normal_irradiance * (cos_n / share), 0};
+      return {p + d * (4 * problem_.rays.diameter()), sun.normal_irradiance * (cos_n / share), 0, {}};
     }
   }
   return {};

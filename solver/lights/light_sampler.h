@@ -9,8 +9,8 @@
 namespace clerestory {
 
 /// A patch is sampled like a light when it is brighter than kBrighter times the median over the area of all surfaces;
-/// dimmer ones are found well enough by the bundle that looks for reflected light. The median and not the mean: a facade
-/// in the sun must not hide the sun's patch in the room behind it.
+/// dimmer ones are found well enough by the bundle that looks for reflected light. The median and not the mean: a
+/// facade in the sun must not hide the sun's patch in the room behind it.
 inline constexpr double kBrighter = 4;
 
 /// One point of a light, as seen from where its light is asked for.
@@ -18,6 +18,7 @@ struct LightSample {
   Vec3 end;             ///< where the shadow ray goes to, lifted [m]
   Spectrum irradiance;  ///< at the receiver when nothing blocks, divided by the density of the choice
   double density = 0;   ///< of choosing this direction, per solid angle; 0 for lights that a bundle cannot hit
+  PatchId patch;        ///< the bright patch it lies on; invalid for other lights
 };
 
 class LightSampler {

@@ -246,5 +246,28 @@ TEST(LitSides, TheInsideOfALampBodyIsDroppedAndItsOutsideIsNot) {
   EXPECT_NEAR(flux(room.patches), 10, 1e-9);  // all of the lamp's power goes into the room
 }
 
+TEST(LitSides, InTheOpenEveryPatchThatALampReachesIsKept) {
+  // A lawn that sees nothing but the sky it has not got and a lamp: hardly any of its rays meets the lamp, and few of
+  // the lamp's rays meet its far corners.
+  for (const bool has_area : {false, true}) {
+    PatchBuilder b(0.5);
+    b.rectangle({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, 40, 40);
+    Lights lights;
+    if (has_area)
+      b.material(0.5, 1000).rectangle({0, 0, 3}, {0, 0.1, 0}, {0.1, 0, 0});
+    else
+      lights.points.push_back({"lamp", {0, 0, 3}, Spectrum(100), {}});
+    PatchSet patches = b.build();
+    make_patches(patches, std::vector<bool>(2 * patches.triangle_count(), true));
+    const RayScene rays(patches);
+    const LitSides lit = find_lit_sides({patches, rays, lights});
+    for (std::size_t t = 0; t < 3200; ++t) {
+      EXPECT_TRUE(lit.wanted[2 * t]) << "lawn, triangle " << t;
+      EXPECT_FALSE(lit.wanted[2 * t + 1]) << "under the lawn, triangle " << t;
+    }
+    EXPECT_EQ(lit.wanted.size() > 2 * 3200 && lit.wanted[2 * 3200], has_area) << "the lamp";
+  }
+}
+
 }  // namespace
 }  // namespace clerestory

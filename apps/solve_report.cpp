@@ -68,8 +68,7 @@ void say_summary(const RunReport& r, const Solved& s, Console& console) {
   console.say("  light   mean illuminance " + rounded(flux / s.patches.total_area()) + " lx, largest " +
               rounded(largest) + " lx");
   console.say("  energy  emitted " + rounded(r.energy.emitted, 4) + " W, absorbed " + rounded(r.energy.absorbed, 4) +
-              " W, escaped " + rounded(r.energy.escaped, 4) + " W, still on its way " + rounded(r.energy.unshot, 4) +
-              " W, imbalance " + percent(r.energy.imbalance()));
+              " W, escaped " + rounded(r.energy.escaped, 4) + " W, imbalance " + percent(r.energy.imbalance()));
   console.say("  error   " + (s.error ? error_line(*s.error) : std::string("not measured")));
   if (s.error_sensors) console.say("  sensors " + error_line(*s.error_sensors));
   console.say("  time    " + duration(t.total) + " (read " + duration(t.read) + ", mesh " + duration(t.mesh) +

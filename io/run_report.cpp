@@ -109,7 +109,6 @@ std::vector<Figure> repeatable_figures(const RunReport& r) {
                          {"energy.emitted", r.energy.emitted},
                          {"energy.absorbed", r.energy.absorbed},
                          {"energy.escaped", r.energy.escaped},
-                         {"energy.unshot", r.energy.unshot},
                          {"energy.imbalance", r.energy.imbalance()}});
   add_error_figures(out, "error", r.error);
   add_error_figures(out, "error_sensors", r.error_sensors);

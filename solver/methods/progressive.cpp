@@ -21,21 +21,19 @@ struct Piece {
   Spectrum flux;
 };
 
+/// Of unshot light, which overshooting makes negative in any channel.
+double magnitude(const Spectrum& dB) { return luminous_mean({std::abs(dB[0]), std::abs(dB[1]), std::abs(dB[2])}); }
+
 /// State of the light between rounds. Sums run over patches in their order, for the same bits every time.
 struct Unshot {
   const PatchSet& patches;
   Field E, dB;
   double escaped = 0, absorbed = 0;  ///< [W], luminous mean; absorbed by glass and sides that take no part
 
-  double flux_at(std::size_t i) const { return patches.area[i] * std::abs(luminous_mean(dB[i])); }
+  double flux_at(std::size_t i) const { return patches.area[i] * magnitude(dB[i]); }
   double flux() const {
     double sum = 0;
     for (std::size_t i = 0; i < patches.patch_count(); ++i) sum += flux_at(i);
-    return sum;
-  }
-  double net_flux() const {
-    double sum = 0;
-    for (std::size_t i = 0; i < patches.patch_count(); ++i) sum += patches.area[i] * luminous_mean(dB[i]);
     return sum;
   }
 };
@@ -56,23 +54,33 @@ std::vector<Spectrum> ambient_radiosity(const Unshot& light, const Closure& clos
   return unshot;
 }
 
-/// Shoots the uniform radiosity e of each space from all its patches, when that leaves little unshot.
-bool shoot_ambient(Unshot& light, const Closure& closure, const std::vector<Spectrum>& e, double worth_it) {
+Spectrum unshot_after_ambient(const Unshot& light, const Closure& closure, const std::vector<Spectrum>& e,
+                              std::size_t i) {
+  const Spectrum e_i = e[closure.space[i]];
+  return light.dB[i] - e_i + light.patches.rho[i] * closure.arrives[i] * e_i;
+}
+
+/// Shoots the uniform radiosity e of each space from all its patches.
+void shoot_ambient(Unshot& light, const Closure& closure, const std::vector<Spectrum>& e) {
   const PatchSet& p = light.patches;
-  const auto unshot_after = [&](std::size_t i) {
-    const Spectrum e_i = e[closure.space[i]];
-    return light.dB[i] - e_i + p.rho[i] * closure.arrives[i] * e_i;
-  };
-  double left = 0;
-  for (std::size_t i = 0; i < p.patch_count(); ++i) left += p.area[i] * std::abs(luminous_mean(unshot_after(i)));
-  if (!(left < worth_it * light.flux())) return false;
   for (std::size_t i = 0; i < p.patch_count(); ++i) {
     const Spectrum e_i = e[closure.space[i]];
-    light.dB.set(i, unshot_after(i));
+    light.dB.set(i, unshot_after_ambient(light, closure, e, i));
     light.E.add(i, closure.arrives[i] * e_i);
     light.escaped += p.area[i] * luminous_mean(closure.escapes[i] * e_i);
     light.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - closure.arrives[i] - closure.escapes[i]) * e_i);
   }
+}
+
+/// The same, when it leaves less than the share `worth_it` of what is unshot.
+bool shoot_ambient_if_worth_it(Unshot& light, const Closure& closure, double worth_it) {
+  const PatchSet& p = light.patches;
+  const std::vector<Spectrum> e = ambient_radiosity(light, closure);
+  double left = 0;
+  for (std::size_t i = 0; i < p.patch_count(); ++i)
+    left += p.area[i] * magnitude(unshot_after_ambient(light, closure, e, i));
+  if (!(left < worth_it * light.flux())) return false;
+  shoot_ambient(light, closure, e);
   return true;
 }
 
@@ -84,7 +92,7 @@ std::vector<std::uint32_t> brightest(const Unshot& light, double share) {
   std::vector<std::uint32_t> chosen;
   for (std::size_t i = 0; i < n; ++i)
     if (light.flux_at(i) >= share * most && light.flux_at(i) > 0) chosen.push_back(static_cast<std::uint32_t>(i));
-  if (share >= 1 && chosen.size() > 1) chosen.resize(1);
+  if (share >= 1 && chosen.size() > 1) chosen.erase(chosen.begin() + 1, chosen.end());
   return chosen;
 }
 
@@ -171,7 +179,7 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
     }
     monitor.report("shoot", std::log(first_residual / residual) / std::log(first_residual / options.stop_fraction));
 
-    const bool uniform = shoot_ambient(light, closure, ambient_radiosity(light, closure), options.ambient_worth_it);
+    const bool uniform = shoot_ambient_if_worth_it(light, closure, options.ambient_worth_it);
     if (!uniform) {
       std::vector<Piece> pieces;
       std::vector<std::size_t> begin{0};
@@ -219,18 +227,16 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
                            ", unshot " + std::to_string(residual));
   }
 
-  const std::vector<Spectrum> ambient = ambient_radiosity(light, closure);
+  // What is not shot by now is spread as ambient light, and balanced as such.
+  shoot_ambient(light, closure, ambient_radiosity(light, closure));
   solution.E = light.E;
   solution.B = Field(n, p.channels);
   for (std::size_t i = 0; i < n; ++i) {
     solution.energy.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - p.rho[i]) * light.E[i]);
-    const Spectrum E = light.E[i] + ambient[closure.space[i]] * closure.arrives[i];
-    solution.E.set(i, E);
-    solution.B.set(i, p.M[i] + p.rho[i] * E);
+    solution.B.set(i, p.M[i] + p.rho[i] * light.E[i]);
   }
   solution.energy.absorbed += light.absorbed;
   solution.energy.escaped += light.escaped;
-  solution.energy.unshot = light.net_flux();
   solution.residual = residual;
   solution.flux_per_ray = flux_per_ray;
   solution.rays += direct.rays + closure.rays;

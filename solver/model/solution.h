@@ -14,9 +14,8 @@ struct EnergyBalance {
   double emitted = 0;   ///< by surfaces and luminaires; from sky and sun, what arrives on surfaces first
   double absorbed = 0;  ///< by surfaces and glass
   double escaped = 0;   ///< left the scene
-  double unshot = 0;    ///< still on its way when the method stopped; covered by the ambient term
-  /// (emitted - absorbed - escaped - unshot) / emitted [1], never corrected away.
-  double imbalance() const { return emitted > 0 ? (emitted - absorbed - escaped - unshot) / emitted : 0; }
+  /// (emitted - absorbed - escaped) / emitted [1], never corrected away.
+  double imbalance() const { return emitted > 0 ? (emitted - absorbed - escaped) / emitted : 0; }
 };
 
 enum class StopReason { converged, time_limit, interrupted, iteration_limit };

@@ -7,8 +7,8 @@
 namespace clerestory {
 
 /// Shooting counts rays, so a patch that n of them met is known to 1 / sqrt(n): slivers and dark corners stay noisy.
-/// Where n is below `fewest`, E and B are gathered anew, at a random point of the patch, from the shot solution. The
-/// energy balance stays that of the shooting.
+/// Where fewer than `fewest` are to be expected, E and B are gathered anew, at a random point of the patch, from the
+/// shot solution. The energy balance stays that of the shooting.
 ///
 /// returns  the number of patches gathered.
 std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, double fewest,

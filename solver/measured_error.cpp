@@ -22,14 +22,16 @@ struct Budget {
   double rays;
 };
 
-Budget budget(Accuracy accuracy) {
-  switch (accuracy) {
+/// More rays with every round that tightens: a small error needs a sharp measurement.
+Budget budget(const SolveOptions& options) {
+  const double more = std::pow(4.0, options.tighten);
+  switch (options.accuracy) {
     case Accuracy::draft:
-      return {128, 512, 4e6};
+      return {std::size_t{128} << options.tighten, 512, 4e6 * more};
     case Accuracy::standard:
-      return {256, 2048, 1.6e7};
+      return {std::size_t{256} << options.tighten, 2048, 1.6e7 * more};
     case Accuracy::fine:
-      return {512, 8192, 1.2e8};
+      return {std::size_t{512} << options.tighten, 8192, 1.2e8 * more};
   }
   return {};
 }
@@ -118,7 +120,7 @@ MeasuredError compare(const Problem& problem, const std::vector<Sample>& samples
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const SolveOptions& options,
                             const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  const Budget spend = budget(options.accuracy);
+  const Budget spend = budget(options);
   std::vector<double> cumulative(patches.patch_count());
   double area = 0;
   for (std::size_t i = 0; i < cumulative.size(); ++i) cumulative[i] = area += patches.area[i];
@@ -151,7 +153,7 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
 
 MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,
                                    const SolveOptions& options, const Monitor& monitor) {
-  const Budget spend = budget(options.accuracy);
+  const Budget spend = budget(options);
   const std::size_t count = std::min(points.size(), spend.points);
   if (count == 0) return {};
   struct Place {

@@ -71,7 +71,7 @@ std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, 
   const RayScene rays(patches);
   const Lights lights = to_local_frame(scene.lights, patches.origin);
   const Problem problem{patches, rays, lights};
-  LitSides lit_sides = find_lit_sides(problem, settings.solve.seed);
+  LitSides lit_sides = find_lit_sides(problem, settings.solve.seed, monitor);
   make_patches(patches, lit_sides.wanted);
   if (patches.patch_count() == 0)
     throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
@@ -104,7 +104,10 @@ std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, 
                 std::move(at_sensors.E), error,   error_sensors};
 }
 
-bool meets(const Solved& solved, double target) { return solved.error && solved.error->rms_relative <= target; }
+/// Met for sure: the measured error and what is uncertain about it.
+bool meets(const Solved& solved, double target) {
+  return solved.error && solved.error->rms_relative + solved.error->confidence <= target;
+}
 
 /// Solves once, or as often as the target error asks for; settings end as they were for the result returned, the best.
 std::optional<Solved> solve_to_target(const Scene& scene, Settings& settings, std::span<const SensorPoint> sensors,

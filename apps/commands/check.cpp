@@ -113,7 +113,7 @@ void add_check_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory check data/scenes/house.json");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, arguments->input,
+      return run(arguments->common, arguments->input, {},
                  [&](Console& console) { return check_command(*arguments, console); });
     };
   });

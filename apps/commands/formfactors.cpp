@@ -174,10 +174,10 @@ void add_formfactors_command(CLI::App& program, Task& task) {
       ->type_name("N")
       ->check(CLI::Range(256, 1 << 24).description(""));
   add_common_options(command, arguments->common);
-  command.footer("example: clerestory formfactors data/scenes/plates.obj -o factors.csv --by object");
+  command.footer("example: clerestory formfactors data/scenes/parallel_plates.obj -o factors.csv --by object");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, arguments->input,
+      return run(arguments->common, arguments->input, {{"-o", arguments->output}},
                  [&](Console& console) { return formfactors_command(*arguments, console); });
     };
   });

@@ -84,7 +84,7 @@ void add_mesh_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory mesh data/scenes/house.json -o patches.vtp --max-element 0.25");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, arguments->input,
+      return run(arguments->common, arguments->input, {{"-o", arguments->output}},
                  [&](Console& console) { return mesh_command(*arguments, console); });
     };
   });

@@ -30,6 +30,11 @@ struct Arguments {
   std::string input, output, sensors, sensors_output;
 };
 
+std::filesystem::path sensors_output(const Arguments& arguments) {
+  if (!arguments.sensors_output.empty()) return arguments.sensors_output;
+  return std::filesystem::path(arguments.output).replace_extension(".sensors.csv");
+}
+
 using Clock = std::chrono::steady_clock;
 
 /// Adds the seconds since it was made, or since the last call, to `sum`.
@@ -180,10 +185,8 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   warn_about_scene(scene, console);
   require_light(scene);
   const std::vector<SensorPoint> sensors = all_sensor_points(scene);
-  std::filesystem::path sensors_output = arguments.sensors_output;
-  if (sensors_output.empty())
-    sensors_output = std::filesystem::path(arguments.output).replace_extension(".sensors.csv");
-  if (!sensors.empty()) check_writable(sensors_output);
+  const std::filesystem::path sensors_file = sensors_output(arguments);
+  if (!sensors.empty()) check_writable(sensors_file);
   if (sensors.empty() && !arguments.sensors_output.empty())
     throw InputError("--sensors-out " + arguments.sensors_output +
                      ": there are no sensors to write; give --sensors POINTS.csv, or \"sensors\" in the scene file.");
@@ -208,7 +211,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   fill_report(report, scene, solved);
   write_result(arguments.output, solved.patches, solved.lightmap, solved.solution, daylight_reference(scene.lights),
                report);
-  if (!sensors.empty()) write_sensors(sensors_output, sensors, solved.sensor_E);
+  if (!sensors.empty()) write_sensors(sensors_file, sensors, solved.sensor_E);
   writing.add_to(report.seconds.write);
 
   const ExitCode code = exit_code(solved, settings);
@@ -218,7 +221,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   report.warnings = console.warnings();
   if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
   say_summary(report, solved, console);
-  console.say("  results " + arguments.output + (sensors.empty() ? "" : ", " + sensors_output.string()) +
+  console.say("  results " + arguments.output + (sensors.empty() ? "" : ", " + sensors_file.string()) +
               (arguments.common.report.empty() ? "" : ", " + arguments.common.report));
   return code;
 }
@@ -252,6 +255,9 @@ void add_solve_command(CLI::App& program, Task& task) {
   command.callback([arguments, &task] {
     task = [arguments] {
       return run(arguments->common, arguments->input,
+                 {{"--sensors", arguments->sensors, false},
+                  {"-o", arguments->output},
+                  {"--sensors-out", sensors_output(*arguments).string()}},
                  [&](Console& console) { return solve_command(*arguments, console); });
     };
   });

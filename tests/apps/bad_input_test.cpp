@@ -78,6 +78,20 @@ TEST_F(BadUsage, TheReportOrLogOverTheSceneIsRefusedAndTheSceneStays) {
   EXPECT_EQ(read_text(scene_), before);
 }
 
+TEST_F(BadUsage, TwoFilesOfOneNameAreRefusedBeforeAnythingIsWritten) {
+  expect_refusal({"solve", scene_, "-o", out_, "--report", out_}, 3, {"--report", "-o too"});
+  expect_refusal({"solve", scene_, "-o", out_, "--log", folder_ / "./out.vtp"}, 3, {"--log", "-o too"});
+  expect_refusal({"solve", scene_, "-o", out_, "--sensors-out", out_}, 3, {"--sensors-out", "-o too"});
+  expect_refusal({"solve", scene_, "-o", out_, "--report", folder_ / "a", "--log", folder_ / "a"}, 3, {"--log too"});
+  expect_refusal({"solve", scene_, "-o", out_, "--sensors", folder_ / "s.csv", "--sensors-out", folder_ / "s.csv"}, 3,
+                 {"--sensors-out", "--sensors too"});
+  // Without --sensors-out the points would go to OUT.sensors.csv.
+  expect_refusal({"solve", scene_, "-o", out_, "--sensors", folder_ / "out.sensors.csv"}, 3, {"--sensors too"});
+  expect_refusal({"mesh", scene_, "-o", out_, "--report", out_}, 3, {"--report", "-o too"});
+  expect_refusal({"formfactors", scene_, "-o", folder_ / "f.csv", "--log", folder_ / "f.csv"}, 3, {"--log", "-o too"});
+  expect_refusal({"check", scene_, "--report", folder_ / "a", "--log", folder_ / "a"}, 3, {"--report", "--log too"});
+}
+
 class BadInput : public testing::Test {
  protected:
   TempFolder folder_;

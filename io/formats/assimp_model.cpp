@@ -1,7 +1,9 @@
 #include "io/formats/assimp_model.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include <assimp/Importer.hpp>
@@ -206,11 +208,27 @@ Model import(const std::filesystem::path& file, const std::string& extension) {
   return to_model(*scene, file, extension);
 }
 
+/// A STEP file (ISO 10303-21) ends with a line that says so. Assimp reads what is there of a cut one, or ends on it.
+void refuse_cut_off_step(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(1024, '\0'), tail(65'536, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (head.find("ISO-10303-21") == head.npos) return;  // something else, of which Assimp says what
+  in.clear();
+  const auto bytes = std::filesystem::file_size(file);
+  in.seekg(static_cast<std::streamoff>(bytes - std::min<std::uintmax_t>(bytes, tail.size())));
+  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+  if (tail.find("END-ISO-10303-21") != tail.npos) return;
+  throw InputError(
+      text(short_name(file), ": is cut off: its last line END-ISO-10303-21; is missing; copy or export it ", "again"));
+}
+
 }  // namespace
 
 Model read_with_assimp(const std::filesystem::path& file) {
   check_input_file(file, kMaxBytes);
   const std::string extension = to_lower(file.extension().string());
+  if (extension == ".ifc") refuse_cut_off_step(file);
   const std::string name = short_name(file);
   const std::uint64_t bytes = std::filesystem::file_size(file);
   // An honest megabyte takes well under a second and some 20 MB; the rest is for slow machines.

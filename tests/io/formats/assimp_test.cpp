@@ -88,6 +88,13 @@ TEST_F(ThroughAssimp, IfcComesInMetresZUpWhateverItsUnit) {
   }
 }
 
+TEST_F(ThroughAssimp, AnIfcFileThatEndsEarlyIsCalledCutOff) {
+  const std::string whole = ifc_block("#5=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);", "");
+  for (const std::size_t length : {whole.size() - 6, whole.size() / 2, std::size_t{40}})
+    EXPECT_EQ(refusal(folder_.write("cut.ifc", whole.substr(0, length))),
+              "cut.ifc: is cut off: its last line END-ISO-10303-21; is missing; copy or export it again");
+}
+
 TEST_F(ThroughAssimp, IfcInFeetOrCentimetresKeepsItsSize) {
   const std::string feet =
       "#101=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);\n#102=IFCMEASUREWITHUNIT(IFCLENGTHMEASURE(0.3048),#101);\n"

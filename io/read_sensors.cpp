@@ -32,6 +32,13 @@ std::vector<std::string_view> cells_of(std::string_view row) {
   return cells;
 }
 
+/// Cells of a row without the empty ones at its end, which spreadsheets leave.
+std::size_t value_count(const std::vector<std::string_view>& cells) {
+  std::size_t n = cells.size();
+  while (n > 0 && cells[n - 1].empty()) --n;
+  return n;
+}
+
 /// Order of the columns when the row is a header, that is, has no number in it.
 std::optional<Order> header_order(const std::vector<std::string_view>& cells, const std::string& where) {
   if (std::any_of(cells.begin(), cells.end(), [](std::string_view cell) { return to_number(cell).has_value(); }))
@@ -74,6 +81,7 @@ SensorSet read_sensors(const std::filesystem::path& file) {
   const std::string name = short_name(file);
   SensorSet sensors{file.stem().string(), {}};
   std::optional<Order> order;
+  std::size_t columns = 6;  // a header may name more, of which we know nothing
   std::size_t row_number = 0;
   for (std::size_t begin = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; begin < bytes.size();) {
     const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
@@ -85,9 +93,15 @@ SensorSet read_sensors(const std::filesystem::path& file) {
     const std::vector<std::string_view> cells = cells_of(row);
     if (!order) {
       order = header_order(cells, where);
-      if (order) continue;
+      if (order) {
+        columns = cells.size();
+        continue;
+      }
       order = Order{0, 1, 2, 3, 4, 5};
     }
+    if (value_count(cells) > columns)
+      throw InputError(text(where, value_count(cells), " values; expected ",
+                            columns == 6 ? "x,y,z,nx,ny,nz" : text("the ", columns, " of the header")));
     sensors.points.push_back(point_of(cells, *order, where));
     if (sensors.points.size() > kMaxSensors) throw InputError(text(name, ": has more than ", kMaxSensors, " rows"));
   }

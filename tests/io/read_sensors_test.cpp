@@ -41,6 +41,10 @@ TEST_F(Sensors, MalformedRowsAreNamedByTheirNumber) {
   EXPECT_EQ(refused("x,y,z,nx,ny,nz\n1,2,3,0,0,1\n1,2,three,0,0,1\n"),
             "points.csv: row 3: z = 'three' is not a number");
   EXPECT_EQ(refused("1,2,3,0,0,1\n1,2,3\n"), "points.csv: row 2: 3 values; expected x,y,z,nx,ny,nz");
+  EXPECT_EQ(refused("1,2,3,0,0,1\n1,2,3,0,0,1,7\n"), "points.csv: row 2: 7 values; expected x,y,z,nx,ny,nz");
+  EXPECT_EQ(refused("id,x,y,z,nx,ny,nz\n1,2,3,0,0,1,7,8\n"),
+            "points.csv: row 2: 8 values; expected the 7 of the header");
+  EXPECT_EQ(read("1,2,3,0,0,1,,\n").points.size(), 1u);  // as spreadsheets write it
   EXPECT_EQ(refused("1,2,3,0,0,0\n"), "points.csv: row 1: the normal is 0,0,0; it needs a direction, 0,0,1 is up");
   EXPECT_EQ(refused("1,nan,3,0,0,1\n"), "points.csv: row 1: y = nan is outside [-1e12, 1e12]");
   EXPECT_EQ(refused("1,2,3,0,0,inf\n"), "points.csv: row 1: nz = inf is outside [-1e12, 1e12]");

@@ -1,5 +1,7 @@
 #include "io/run_report.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
@@ -94,6 +96,9 @@ std::string stop_name(StopReason stop) {
 std::vector<Figure> repeatable_figures(const RunReport& r) {
   std::vector<Figure> out = {{"version", r.version}, {"input", r.input}, {"method", r.method}};
   for (const Figure& setting : r.settings) out.push_back({"settings." + setting.name, setting.value});
+  const auto is_max_element = [](const Figure& setting) { return setting.name == "max_element"; };
+  if (r.repairs.max_element > 0 && std::ranges::none_of(r.settings, is_max_element))
+    out.push_back({"settings.max_element", r.repairs.max_element});  // not given: what the mesh chose
   const auto& c = r.counts;
   out.insert(out.end(), {{"counts.triangles", count(c.triangles)},
                          {"counts.elements", count(c.elements)},

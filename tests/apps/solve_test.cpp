@@ -218,6 +218,13 @@ TEST(Solve, TheCommandLineWinsOverTheSceneFile) {
   EXPECT_EQ(by_line.texts.at("settings.accuracy"), std::vector<std::string>{"draft"});
 }
 
+TEST(Solve, TheReportHasTheLongestElementAlsoWhenNobodyGaveIt) {
+  const TempFolder folder;
+  ASSERT_EQ(solve(BoxScene{}.write(folder), folder / "out.vtp", {"--accuracy", "draft"}).exit_code, 0);
+  const ResultFile result = read_result(folder / "out.vtp");
+  EXPECT_EQ(result.numbers.at("settings.max_element").values, result.numbers.at("repairs.max_element").values);
+}
+
 TEST(Solve, QuietSaysNothingAndTheLogSaysAll) {
   const TempFolder folder;
   const std::string scene = BoxScene{}.write(folder);

@@ -12,6 +12,13 @@ std::string short_name(const std::filesystem::path& file) {
   return name.empty() ? clean_text(file.string()) : name;
 }
 
+void require_file(const std::filesystem::path& file, const std::string& place, const std::string& named) {
+  std::error_code error;
+  if (std::filesystem::status(file, error).type() != std::filesystem::file_type::not_found) return;
+  throw InputError(text(place, " '", quotable(named), "': there is no file ", clean_text(file.string()),
+                        "; paths are relative to the scene file"));
+}
+
 void check_input_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   namespace fs = std::filesystem;
   std::error_code error;

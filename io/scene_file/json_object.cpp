@@ -34,7 +34,12 @@ std::string_view type_words(const Json& value) {
 }  // namespace
 
 std::string Range::words() const {
-  const auto bound = [](double x) { return std::isfinite(x) ? text(x) : std::string(x < 0 ? "-inf" : "inf"); };
+  const auto bound = [](double x) {
+    if (!std::isfinite(x)) return std::string(x < 0 ? "-inf" : "inf");
+    std::string digits = text(x);
+    if (const std::size_t plus = digits.find("e+"); plus != digits.npos) digits.erase(plus + 1, 1);  // 1e12
+    return digits;
+  };
   return text(low_allowed && std::isfinite(low) ? '[' : '(', bound(low), ", ", bound(high),
               high_allowed && std::isfinite(high) ? ']' : ')');
 }
@@ -96,18 +101,18 @@ std::optional<std::string> JsonObject::choice(std::string_view key, std::span<co
   return chosen;
 }
 
-std::optional<std::vector<double>> JsonObject::numbers(std::string_view key, std::size_t n) const {
+std::optional<std::vector<double>> JsonObject::numbers(std::string_view key, std::size_t n, const Range& range) const {
   if (!has(key)) return std::nullopt;
   const Json& array = as_array(at(key), place(key), text(n, " numbers"));
   if (array.size() != n) throw InputError(text(place(key), " has ", array.size(), " values; it needs ", n));
   std::vector<double> values;
   for (const Json& member : array)
-    values.push_back(checked_number(member, text(place(key), "[", values.size(), "]"), kFinite));
+    values.push_back(checked_number(member, text(place(key), "[", values.size(), "]"), range));
   return values;
 }
 
-std::optional<Vec3> JsonObject::vector(std::string_view key) const {
-  const auto v = numbers(key, 3);
+std::optional<Vec3> JsonObject::vector(std::string_view key, const Range& range) const {
+  const auto v = numbers(key, 3, range);
   return v ? std::optional(Vec3{(*v)[0], (*v)[1], (*v)[2]}) : std::nullopt;
 }
 

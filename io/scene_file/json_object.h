@@ -35,6 +35,10 @@ struct Range {
 inline constexpr Range kFinite{};
 inline constexpr Range kNotNegative{.low = 0};
 inline constexpr Range kPositive{.low = 0, .low_allowed = false};
+/// Of positions and lengths in a scene, as of the corners of models and the rows of sensor files.
+inline constexpr Range kCoordinate{.low = -1e12, .high = 1e12, .advice = "positions are in metres"};
+/// Of every quantity of light in its own unit: what is more is a mistake, and would not fit into the result's floats.
+inline constexpr double kMostLight = 1e15;
 
 /// One colour as it was written: a number, or an array of one value per channel.
 struct JsonColour {
@@ -60,11 +64,11 @@ class JsonObject {
   std::optional<std::string> word(std::string_view key) const;
   /// A word that must be one of `known`.
   std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> known) const;
-  std::optional<Vec3> vector(std::string_view key) const;
+  std::optional<Vec3> vector(std::string_view key, const Range& range = kFinite) const;
   std::optional<Vec3> unit_vector(std::string_view key) const;
   std::optional<JsonColour> colour(std::string_view key, const Range& range) const;
   /// Exactly n numbers.
-  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t n) const;
+  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t n, const Range& range = kFinite) const;
 
  private:
   const Json* value_;

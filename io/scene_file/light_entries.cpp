@@ -1,6 +1,7 @@
 #include "io/scene_file/light_entries.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
@@ -12,13 +13,14 @@ namespace {
 
 constexpr double kDefaultSkyLux = 10'000;  // a usual overcast sky; the daylight factor does not depend on it
 
-constexpr std::string_view kSkies[] = {"uniform", "cie-overcast", "cie-clear", "cie-general", "perez"};
+constexpr std::string_view kSkies[] = {"uniform", "cie-overcast"};
+constexpr std::string_view kLaterSkies[] = {"cie-clear", "cie-general", "perez"};
 
 /// place   "office.json: sky.model", or "--sky".
 SkyModel sky_model(const std::string& name, const std::string& place) {
   if (name == "uniform") return SkyModel::uniform;
   if (name == "cie-overcast") return SkyModel::cie_overcast;
-  if (std::find(std::begin(kSkies), std::end(kSkies), name) == std::end(kSkies)) {
+  if (std::find(std::begin(kLaterSkies), std::end(kLaterSkies), name) == std::end(kLaterSkies)) {
     throw InputError(text(place, " '", quotable(name), "' is not known; ", suggestion(name, kSkies)));
   }
   throw InputError(text(place, " '", name,
@@ -39,8 +41,9 @@ PointLuminaire read_luminaire(const JsonObject& object, ChannelCount& channels, 
   luminaire.name = object.word("name").value_or("");
   luminaire.group = object.word("group").value_or("");
   object.at("position");
-  luminaire.position = *object.vector("position");
-  constexpr Range kFlux{.low = 0, .advice = "a lamp cannot emit less than nothing"};
+  luminaire.position = *object.vector("position", kCoordinate);
+  constexpr Range kFlux{
+      .low = 0, .high = kMostLight, .advice = "a lamp emits no less than nothing and no more than a result can hold"};
   const auto flux = object.colour("luminous_flux", kFlux);
   const auto power = object.colour("power", kFlux);
   if (flux && power) {
@@ -50,7 +53,7 @@ PointLuminaire read_luminaire(const JsonObject& object, ChannelCount& channels, 
     throw InputError(text(object.place("luminous_flux"), " is missing; a lamp needs its flux in lumens"));
   channels.note(flux ? *flux : *power, object.place(flux ? "luminous_flux" : "power"));
   luminaire.power = flux ? flux->value / kWhiteEfficacy : power->value;
-  luminaire.power *= object.number("dimming", kNotNegative).value_or(1);
+  luminaire.power *= object.number("dimming", {.low = 0, .high = 1000, .advice = "1 is full light"}).value_or(1);
   if (object.unit_vector("aim") || object.number("rotation")) {
     warnings.push_back(
         text(object.where(), ": aim and rotation are not used: a point shines the same in all directions"));
@@ -59,11 +62,17 @@ PointLuminaire read_luminaire(const JsonObject& object, ChannelCount& channels, 
 }
 
 Sky read_sky(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
+  if (object.has("weather")) {
+    throw InputError(text(object.place("weather"), " '", quotable(object.word("weather").value_or("")),
+                          "': weather files are not available in this version; use \"model\": \"cie-overcast\" with ",
+                          "its horizontal_illuminance, and \"sun\" for direct light"));
+  }
   Sky sky;
   const std::string name = object.word("model").value_or("cie-overcast");
   sky.model = sky_model(name, object.place("model"));
   if (!object.has("model")) warnings.push_back(text(object.place("model"), " is not given; cie-overcast is taken"));
-  constexpr Range kLux{.low = 0, .advice = "a sky cannot give less than no light"};
+  constexpr Range kLux{
+      .low = 0, .high = kMostLight, .advice = "a sky gives no less than no light and no more than a result can hold"};
   if (const auto lux = object.colour("horizontal_illuminance", kLux)) {
     channels.note(*lux, object.place("horizontal_illuminance"));
     sky.horizontal_irradiance = lux->value / kWhiteEfficacy;
@@ -75,16 +84,16 @@ Sky read_sky(const JsonObject& object, ChannelCount& channels, std::vector<std::
   sky.ground_reflectance = object.number("ground_reflectance", kGround).value_or(sky.ground_reflectance);
 
   object.number("type", {.low = 1, .high = 15, .advice = "the CIE numbers its general skies 1 to 15"});
-  object.number("direct_normal", kNotNegative);
-  object.number("diffuse_horizontal", kNotNegative);
-  object.word("weather");
-  for (const std::string_view key : {"type", "direct_normal", "diffuse_horizontal", "weather"}) {
+  object.number("direct_normal", kLux);
+  object.number("diffuse_horizontal", kLux);
+  for (const std::string_view key : {"type", "direct_normal", "diffuse_horizontal"}) {
     if (object.has(key)) warnings.push_back(text(object.place(key), " is not used by the sky ", name));
   }
   return sky;
 }
 
-Sun read_sun(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
+/// Nothing, with a warning, when the sun has set: the ground is in its way.
+std::optional<Sun> read_sun(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
   if (!object.has("direction")) {
     throw InputError(text(object.place("direction"),
                           " is missing; the sun of a place and time is not available in this ",
@@ -92,13 +101,16 @@ Sun read_sun(const JsonObject& object, ChannelCount& channels, std::vector<std::
   }
   Sun sun;
   sun.direction = *object.unit_vector("direction");
-  constexpr Range kLux{.low = 0, .advice = "a sun cannot give less than no light"};
+  constexpr Range kLux{
+      .low = 0, .high = kMostLight, .advice = "a sun gives no less than no light and no more than a result can hold"};
   object.at("normal_illuminance");
   const JsonColour lux = *object.colour("normal_illuminance", kLux);
   channels.note(lux, object.place("normal_illuminance"));
   sun.normal_irradiance = lux.value / kWhiteEfficacy;
   if (sun.direction.z <= 0) {
-    warnings.push_back(text(object.place("direction"), " points below the horizon; it is the direction to the sun"));
+    warnings.push_back(text(object.place("direction"), " has z <= 0: the sun is not above the horizon and gives no ",
+                            "light; it is the direction to the sun, with z up"));
+    return std::nullopt;
   }
   return sun;
 }
@@ -125,6 +137,15 @@ void check_place_and_time(const JsonObject& root, const std::string& file_name, 
     if (!fits) {
       throw InputError(
           text(root.place("time"), " '", quotable(*time), "' is not a time; write it as 2026-06-21T12:00"));
+    }
+    const auto part = [&](std::size_t begin, std::size_t n) {
+      return n == 0 ? 0 : static_cast<unsigned>(*to_number(std::string_view(*time).substr(begin, n)));
+    };
+    using namespace std::chrono;
+    const year_month_day date(year(static_cast<int>(part(0, 4))), month(part(5, 2)), day(part(8, 2)));
+    if (!date.ok() || part(11, 2) > 23 || part(14, 2) > 59 || part(17, time->size() == 19 ? 2 : 0) > 59) {
+      throw InputError(text(root.place("time"), " '", *time, "' does not exist; months are 01 to 12, days those of ",
+                            "the month, hours 00 to 23, minutes and seconds 00 to 59"));
     }
   }
   if (time || root.has("location")) {
@@ -154,7 +175,7 @@ void read_light_entries(const JsonObject& root, const std::string& file_name, Ch
   }
   if (root.has("sun")) {
     const JsonObject object(root.at("sun"), file_name + ": sun", {"direction", "normal_illuminance"});
-    lights.suns.push_back(read_sun(object, channels, warnings));
+    if (const std::optional<Sun> sun = read_sun(object, channels, warnings)) lights.suns.push_back(*sun);
   }
   check_place_and_time(root, file_name, warnings);
 }
@@ -167,9 +188,9 @@ Sky sky_of_option(std::string_view option) {
   if (colon != option.npos) {
     const std::string_view number = option.substr(colon + 1);
     lux = to_number(number).value_or(-1);
-    if (!kNotNegative.contains(lux)) {
+    if (!(lux >= 0 && lux <= kMostLight)) {
       throw InputError(
-          text("--sky: '", quotable(number), "' is not an illuminance in lux, [0, inf); write cie-overcast:10000"));
+          text("--sky: '", quotable(number), "' is not an illuminance in lux, [0, 1e15]; write cie-overcast:10000"));
     }
   }
   sky.horizontal_irradiance = Spectrum(lux / kWhiteEfficacy);

@@ -13,7 +13,8 @@ namespace {
 constexpr Range kReflectance{
     .low = 0, .high = 1, .high_allowed = false, .advice = "a wall cannot reflect more than it receives"};
 constexpr Range kTransmittance{.low = 0, .high = 1, .advice = "a sheet cannot pass more than it receives"};
-constexpr Range kEmission{.low = 0, .advice = "a surface cannot emit less than nothing"};
+constexpr Range kEmission{
+    .low = 0, .high = kMostLight, .advice = "a surface emits no less than nothing and no more than a result can hold"};
 
 /// One way to say what a surface emits; `factor` turns it into W/m2, or W where `total`.
 struct Emission {

@@ -78,13 +78,21 @@ std::vector<SurfaceId> add_surfaces(Scene& scene, const Model& model, const std:
   return id;
 }
 
-void add_lights(Scene& scene, const Lights& lights, const Affine& place) {
+Vec3 light_position(const Vec3& p, const std::string& light, const std::string& file) {
+  if (!is_finite(p) || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate) {
+    throw InputError(text(file, ": the light '", quotable(light), "' stands at (", p.x, ", ", p.y, ", ", p.z,
+                          "), outside [-1e12, 1e12] m; check the file, unit and transform"));
+  }
+  return p;
+}
+
+void add_lights(Scene& scene, const Lights& lights, const Affine& place, const std::string& file) {
   for (PointLuminaire point : lights.points) {
-    point.position = place.point(point.position);
+    point.position = light_position(place.point(point.position), point.name, file);
     scene.lights.points.push_back(std::move(point));
   }
   for (SpotLuminaire spot : lights.spots) {
-    spot.position = place.point(spot.position);
+    spot.position = light_position(place.point(spot.position), spot.name, file);
     spot.direction = normalized(place.direction(spot.direction));
     scene.lights.spots.push_back(std::move(spot));
   }
@@ -137,7 +145,7 @@ void place_model(Scene& scene, const Model& model, const std::filesystem::path& 
   const std::string stem = clean_text(file.stem().string());
   const std::vector<MaterialId> material = add_materials(scene, model, file, by_scene_file);
   const std::vector<SurfaceId> surface = add_surfaces(scene, model, stem);
-  add_lights(scene, model.lights, place);
+  add_lights(scene, model.lights, place, name);
 
   const PolygonSoup& from = model.polygons;
   PolygonSoup& to = scene.polygons;

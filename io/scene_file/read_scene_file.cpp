@@ -23,7 +23,8 @@ constexpr std::uintmax_t kMaxBytes = 16u << 20;
 constexpr std::size_t kMaxGeometry = 10'000;
 
 std::array<double, 16> read_transform(const JsonObject& object) {
-  const std::vector<double> values = *object.numbers("transform", 16);
+  constexpr Range kTransform{.low = kCoordinate.low, .high = kCoordinate.high, .advice = "it moves metres to metres"};
+  const std::vector<double> values = *object.numbers("transform", 16, kTransform);
   const std::string place = object.place("transform");
   std::array<double, 16> t{};
   std::copy(values.begin(), values.end(), t.begin());
@@ -65,6 +66,7 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     if (to_lower(model_file.extension().string()) == ".json") {
       throw InputError(text(object.place("file"), " '", quotable(model_name), "' is a scene file; name a model"));
     }
+    require_file(model_file, object.place("file"), model_name);
     auto model = read_before.find(model_file);
     if (model == read_before.end()) {
       model = read_before.emplace(model_file, read_model(model_file)).first;

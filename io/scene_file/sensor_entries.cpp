@@ -1,7 +1,9 @@
 #include "io/scene_file/sensor_entries.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "io/input_file.h"
 #include "io/read_sensors.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -14,8 +16,10 @@ double steps(double length, double spacing) { return std::floor(length / spacing
 
 SensorSet read_grid(const JsonObject& object, std::size_t room_left) {
   for (const std::string_view key : {"origin", "u", "v", "spacing"}) object.at(key);
-  const Vec3 origin = *object.vector("origin"), u = *object.vector("u"), v = *object.vector("v");
-  const double spacing = *object.number("spacing", kPositive);
+  const Vec3 origin = *object.vector("origin", kCoordinate), u = *object.vector("u", kCoordinate),
+             v = *object.vector("v", kCoordinate);
+  const double spacing =
+      *object.number("spacing", {.low = 0, .high = 1e12, .low_allowed = false, .advice = "it is in metres"});
   Vec3 normal;
   if (object.has("normal")) {
     normal = *object.unit_vector("normal");
@@ -32,8 +36,14 @@ SensorSet read_grid(const JsonObject& object, std::size_t room_left) {
   SensorSet sensors;
   const Vec3 step_u = normalized(u) * spacing, step_v = normalized(v) * spacing;
   for (int j = 0; j < static_cast<int>(along_v); ++j) {
-    for (int i = 0; i < static_cast<int>(along_u); ++i)
-      sensors.points.push_back({origin + step_u * i + step_v * j, normal});
+    for (int i = 0; i < static_cast<int>(along_u); ++i) {
+      const Vec3 p = origin + step_u * i + step_v * j;
+      if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kCoordinate.high)) {
+        throw InputError(text(object.where(), ": origin, u and v lead to a point at (", p.x, ", ", p.y, ", ", p.z,
+                              "), outside [-1e12, 1e12] m"));
+      }
+      sensors.points.push_back({p, normal});
+    }
   }
   return sensors;
 }
@@ -51,7 +61,9 @@ std::vector<SensorSet> read_sensor_entries(const Json& sensors, const std::strin
       for (const std::string_view key : {"origin", "u", "v", "spacing", "normal"}) {
         if (object.has(key)) throw InputError(text(object.place(key), " does not go with \"file\"; keep one of them"));
       }
-      sets.push_back(read_sensors(folder / *object.word("file")));
+      const std::string file = *object.word("file");
+      require_file(folder / file, object.place("file"), file);
+      sets.push_back(read_sensors(folder / file));
     } else {
       sets.push_back(read_grid(object, kMaxSensors - total));
     }

@@ -70,7 +70,7 @@ TEST(ModelsGivenDirectly, TakeUnitUpAndSkyOfTheCommandLine) {
   EXPECT_EQ(refusal(room, {.unit = {}, .up = {}, .sky = "overcast"}),
             "--sky 'overcast' is not known; did you mean 'cie-overcast'?");
   EXPECT_EQ(refusal(room, {.unit = {}, .up = {}, .sky = "uniform:bright"}),
-            "--sky: 'bright' is not an illuminance in lux, [0, inf); write cie-overcast:10000");
+            "--sky: 'bright' is not an illuminance in lux, [0, 1e15]; write cie-overcast:10000");
   EXPECT_EQ(refusal(room, {.unit = "km", .up = {}, .sky = {}}),
             "--unit 'km' is not known; known are m, cm, mm, ft, in");
   EXPECT_EQ(refusal(room, {.unit = {}, .up = "x", .sky = {}}), "--up 'x' is not known; known are y, z");

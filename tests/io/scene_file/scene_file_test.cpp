@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "io/text.h"
 #include "tests/io/reading.h"
 
 namespace clerestory {
@@ -242,7 +243,8 @@ TEST_F(SceneFile, TwoWordsForOneEmissionAreRefused) {
 
 TEST_F(SceneFile, NegativeAndEndlessQuantitiesAreRefused) {
   EXPECT_EQ(wood_refusal(R"({ "power": -1 })"),
-            "s.json: materials 'wood': power = -1 is outside [0, inf); a surface cannot emit less than nothing.");
+            "s.json: materials 'wood': power = -1 is outside [0, 1e15]; a surface emits no less than nothing and no "
+            "more than a result can hold.");
   EXPECT_NE(wood_refusal(R"({ "power": 1e999 })").find("not valid JSON"), std::string::npos);
   EXPECT_NE(wood_refusal(R"({ "power": NaN })").find("not valid JSON"), std::string::npos);
   EXPECT_EQ(refusal_with(R"("solver": { "time_limit": 0 })"),
@@ -251,6 +253,52 @@ TEST_F(SceneFile, NegativeAndEndlessQuantitiesAreRefused) {
             "s.json: materials 'wood': sides = 3 is outside [1, 2]; a surface has one lit side or two.");
   EXPECT_EQ(refusal_with(R"("sky": { "model": "uniform", "ground_reflectance": 2 })"),
             "s.json: sky.ground_reflectance = 2 is outside [0, 1]; the ground cannot reflect more than it receives.");
+}
+
+TEST_F(SceneFile, LightBeyondWhatAResultCanHoldIsRefusedInEveryUnit) {
+  for (const char* key : {"exitance", "luminous_exitance", "radiance", "luminance", "power", "luminous_flux"}) {
+    const std::string name = key;
+    EXPECT_NE(wood_refusal("{ \"" + name + "\": 1e300 }").find(name + " = 1e+300 is outside [0, 1e15]"),
+              std::string::npos);
+    EXPECT_TRUE(wood("{ \"" + name + "\": 1e15 }").emits());
+  }
+  EXPECT_NE(refusal_with(R"("luminaires": [ { "type": "point", "position": [0,0,0], "luminous_flux": 1e300 } ])")
+                .find("luminaires[0].luminous_flux = 1e+300 is outside [0, 1e15]"),
+            std::string::npos);
+  EXPECT_NE(refusal_with(R"("sky": { "model": "uniform", "horizontal_illuminance": 1e300 })")
+                .find("sky.horizontal_illuminance = 1e+300 is outside [0, 1e15]"),
+            std::string::npos);
+  EXPECT_NE(refusal_with(R"("sun": { "direction": [0, 0, 1], "normal_illuminance": 1e300 })")
+                .find("sun.normal_illuminance = 1e+300 is outside [0, 1e15]"),
+            std::string::npos);
+}
+
+TEST_F(SceneFile, PlacesFartherThanModelsMayReachAreRefused) {
+  EXPECT_EQ(refusal_with(R"("luminaires": [ { "type": "point", "position": [1e19, 0, 0], "luminous_flux": 1 } ])"),
+            "s.json: luminaires[0].position[0] = 1e+19 is outside [-1e12, 1e12]; positions are in metres.");
+  EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,-1e20,0], "u": [1,0,0], "v": [0,1,0], "spacing": 1 } ])"),
+            "s.json: sensors[0].origin[1] = -1e+20 is outside [-1e12, 1e12]; positions are in metres.");
+  EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,0,0], "u": [1e30,0,0], "v": [0,1,0], "spacing": 1e29 } ])"),
+            "s.json: sensors[0].u[0] = 1e+30 is outside [-1e12, 1e12]; positions are in metres.");
+  EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [1e12,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 1 } ])"),
+            "s.json: sensors[0]: origin, u and v lead to a point at (1e+12, 0, 0), outside [-1e12, 1e12] m");
+}
+
+TEST_F(SceneFile, ASunBelowTheHorizonGivesNoLight) {
+  for (const char* direction : {"[1, 0, -0.1]", "[1, 0, 0]"}) {
+    const Scene scene = read_with(text(R"("sun": { "direction": )", direction, R"(, "normal_illuminance": 1000 })"));
+    EXPECT_TRUE(scene.lights.suns.empty());
+    EXPECT_NE(all_warnings(scene).find("s.json: sun.direction has z <= 0"), std::string::npos) << all_warnings(scene);
+  }
+}
+
+TEST_F(SceneFile, TimesThatDoNotExistAreRefused) {
+  for (const char* time : {"2026-13-45T99:99", "2026-02-29T12:00", "2026-06-21T24:00", "2026-06-21T12:60",
+                           "2026-00-01T00:00", "2026-06-21T12:00:60"})
+    EXPECT_NE(refusal_with(text(R"("time": ")", time, '"')).find(text("time '", time, "' does not exist")),
+              std::string::npos)
+        << time;
+  EXPECT_NO_THROW(read_with(R"("time": "2028-02-29T23:59:59")"));
 }
 
 TEST_F(SceneFile, DirectionsNeedALength) {
@@ -288,6 +336,11 @@ TEST_F(SceneFile, WhatALaterVersionReadsIsNamedAsSuch) {
   EXPECT_NE(wood_refusal(R"({ "type": "diffuser", "transmittance": 0.3 })")
                 .find("'diffuser' is not available in this version"),
             std::string::npos);
+  EXPECT_NE(refusal_with(R"("sky": { "weather": "city.epw" })")
+                .find("sky.weather 'city.epw': weather files are not available in this version; use"),
+            std::string::npos);
+  EXPECT_EQ(refusal_with(R"("sky": { "model": "blue" })"),
+            "s.json: sky.model 'blue' is not known; known are uniform, cie-overcast");
   EXPECT_NE(refusal_with(R"("sun": { "normal_illuminance": 1 })")
                 .find("not available in this version, so give the direction"),
             std::string::npos);
@@ -303,7 +356,10 @@ TEST_F(SceneFile, MissingMembersAreNamed) {
   EXPECT_EQ(refusal_with(R"("luminaires": [ { "type": "point", "position": [0, 0, 0] } ])"),
             "s.json: luminaires[0].luminous_flux is missing; a lamp needs its flux in lumens");
   EXPECT_EQ(refusal(folder_.write("s.json", R"({ "geometry": [ { "file": "hall.obj" } ] })")),
-            folder_ / "hall.obj" + ": no such file");
+            "s.json: geometry[0].file 'hall.obj': there is no file " + folder_ / "hall.obj" +
+                "; paths are relative to the scene file");
+  EXPECT_NE(refusal_with(R"("sensors": [ { "file": "desk.csv" } ])").find("s.json: sensors[0].file 'desk.csv': there"),
+            std::string::npos);
 }
 
 TEST_F(SceneFile, KeysGivenTwiceAreRefused) {
@@ -316,7 +372,7 @@ TEST_F(SceneFile, NestingBombsAndSensorBombsAreRefusedAtOnce) {
   EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 1e-9 } ])"),
             "s.json: sensors[0].spacing = 1e-09 makes 1e+09 x 1e+09 points; at most 10000000 in one scene");
   EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 0 } ])"),
-            "s.json: sensors[0].spacing = 0 is outside (0, inf)");
+            "s.json: sensors[0].spacing = 0 is outside (0, 1e12]; it is in metres.");
 }
 
 }  // namespace

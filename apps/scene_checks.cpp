@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "apps/wording.h"
+#include "io/scene_file/nearest_name.h"
 #include "solver/gather.h"
 #include "solver/model/error.h"
 
@@ -41,6 +42,18 @@ std::string row_list(const std::vector<std::size_t>& rows) {
   return text;
 }
 
+std::string why_unused(const std::string& pattern, const Scene& scene) {
+  if (pattern.find_first_of("*?") != pattern.npos) return "matches no material of the model that is left to it.";
+  std::vector<std::string_view> names;
+  for (const Material& material : scene.materials) {
+    if (material.name == pattern) return "decides nothing: a rule before it matches that material first.";
+    names.push_back(material.name);
+  }
+  const std::string near = suggestion(pattern, names);
+  return near.starts_with("did you mean") ? "matches no material of the model; " + near
+                                          : "matches no material of the model.";
+}
+
 }  // namespace
 
 bool has_light(const Scene& scene) {
@@ -72,7 +85,7 @@ std::vector<SensorPoint> all_sensor_points(const Scene& scene) {
 void warn_about_scene(const Scene& scene, Console& console) {
   for (const std::string& warning : scene.warnings) console.warn(warning);
   for (const std::string& name : scene.unused_materials)
-    console.warn(scene.file + ": materials '" + name + "' matches no material of the model.");
+    console.warn(scene.file + ": materials '" + name + "' " + why_unused(name, scene));
 }
 
 void warn_about_places(const Problem& problem, const Scene& scene, std::span<const SensorPoint> sensors,

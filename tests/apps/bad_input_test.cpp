@@ -153,6 +153,13 @@ TEST_F(BadInput, NoLightAtAllIsRefusedAndSaysHowToAddSome) {
   expect_refusal({"solve", folder_ / "room.obj", "-o", folder_ / "out.vtp"}, 3, {"no light", "--sky"});
 }
 
+TEST_F(BadInput, ASunThatHasSetIsNoLight) {
+  BoxScene{.M = 0}.write(folder_);
+  expect_scene_refused(
+      R"({ "geometry": [{ "file": "room.obj" }], "sun": { "direction": [0, 1, -1], "normal_illuminance": 1000 } })",
+      {"not above the horizon", "no light at all"});
+}
+
 TEST_F(BadInput, SensorRowsAreNamedByTheirNumber) {
   const std::string scene = BoxScene{}.write(folder_);
   const std::string rows = folder_.write("rows.csv", "x,y,z,nx,ny,nz\n1,1,1,0,0,1\n1,1,1,0,zero,1\n");
@@ -181,6 +188,7 @@ TEST_F(BadInput, WhatIsOnlyOddIsAWarning) {
   warns(R"("luminaires": [{ "type": "point", "position": [2, 1.5, 30], "luminous_flux": 1000 }])", {},
         {"outside every room"});
   warns(R"("materials": { "wall": { "exitance": 1 }, "marble": { "reflectance": 0.6 } })", {}, {"marble"});
+  warns(R"("materials": { "wal": { "reflectance": 0.6 } }, "sky": {})", {}, {"'wal'", "did you mean 'wall'?"});
 
   // A solid block in the room, and a sensor in the middle of it.
   const std::string block = folder_.write("block.csv", "2,1.5,1,0,0,1\n1,1.5,0.5,0,0,1\n");

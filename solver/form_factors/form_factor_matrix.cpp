@@ -177,7 +177,7 @@ struct Builder {
     return std::sqrt(variance);
   }
 
-  /// Takes the tile pairs in parallel; false when the monitor stopped it.
+  /// Takes the tile pairs in parallel; false when the monitor stopped it. The first pass notes the rows it has filled.
   bool pass(bool second, const Monitor& monitor) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> work;
     work.reserve(tiles * (tiles + 1) / 2);
@@ -187,14 +187,25 @@ struct Builder {
     // In slices, so that progress and the wish to stop are seen between them.
     const std::size_t slice = std::max<std::size_t>(64, work.size() / 100);
     for (std::size_t done = 0; done < work.size(); done += slice) {
-      if (monitor.should_stop()) return false;
+      if (monitor.should_stop()) {
+        // Pairs are taken I by I, so rows of tiles before the next I have met all others.
+        if (!second) note_filled(work[done].first);
+        return false;
+      }
       const double share = static_cast<double>(done) / static_cast<double>(work.size());
       monitor.report("form factors", second ? 0.85 + 0.15 * share : 0.85 * share);
       parallel_for(std::min(slice, work.size() - done), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = done + begin; k < done + end; ++k) tile_pair(work[k].first, work[k].second, second);
       });
     }
+    if (!second) note_filled(tiles);
     return true;
+  }
+
+  /// Rows of the tiles before this one are filled.
+  void note_filled(std::size_t end) {
+    for (std::size_t t = 0; t < end; ++t)
+      for (const std::uint32_t i : tile(t)) F.row_filled[i] = true;
   }
 
   /// Fills the matrix; false when the monitor stopped it.
@@ -314,18 +325,6 @@ std::string format(const char* pattern, auto... values) {
   return line;
 }
 
-void refuse_when_too_large(std::size_t n, std::size_t limit) {
-  const std::size_t allowed = limit > 0 ? limit : physical_memory() / 10 * 6;
-  const std::size_t needed = form_factor_bytes(n);
-  if (needed <= allowed || allowed == 0) return;
-  constexpr double kMiB = 1024.0 * 1024.0;
-  throw InputError(
-      format("the full form-factor matrix of %zu patches needs %.0f MiB, more than the %.0f MiB allowed "
-             "(60 %% of this machine's memory unless set); use a larger --max-element for fewer patches, "
-             "or --method progressive, which needs no matrix.",
-             n, static_cast<double>(needed) / kMiB, static_cast<double>(allowed) / kMiB));
-}
-
 }  // namespace
 
 std::size_t form_factor_bytes(std::size_t n) {
@@ -333,15 +332,28 @@ std::size_t form_factor_bytes(std::size_t n) {
   return n * n * sizeof(float) + n * (sizeof(QuadratureTriangle) + tiles * sizeof(float) + 64);
 }
 
+void require_matrix_fits(std::size_t patches, const FormFactorOptions& options) {
+  const std::size_t allowed = options.memory_limit > 0 ? options.memory_limit : physical_memory() / 10 * 6;
+  const std::size_t needed = form_factor_bytes(patches);
+  if (needed <= allowed || allowed == 0) return;
+  constexpr double kMiB = 1024.0 * 1024.0;
+  throw InputError(
+      format("the full form-factor matrix of %zu patches needs %.0f MiB, more than the %.0f MiB allowed "
+             "(60 %% of this machine's memory unless set); use a larger --max-element for fewer patches, "
+             "or --method progressive, which needs no matrix.",
+             patches, static_cast<double>(needed) / kMiB, static_cast<double>(allowed) / kMiB));
+}
+
 FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& rays, const FormFactorOptions& options,
                                     const Monitor& monitor) {
   const std::size_t n = patches.patch_count();
-  refuse_when_too_large(n, options.memory_limit);
+  require_matrix_fits(n, options);
   FormFactorMatrix F;
   F.n = n;
   F.value.assign(n * n, 0.0f);
   F.row_error.assign(n, 0.0);
   F.closed.assign(n, false);
+  F.row_filled.assign(n, false);
   if (n == 0) return F;
 
   {

@@ -30,6 +30,7 @@ struct FormFactorMatrix {
   std::vector<double> row_error;    ///< n, expected error of raw_row_sum (standard error of the rays, quadrature)
   std::vector<bool> closed;         ///< n, all that leaves the patch arrives somewhere: the true row sum is 1
   bool complete = true;             ///< false when the monitor stopped the work: unfinished factors are 0
+  std::vector<bool> row_filled;     ///< n, no factor of the row is missing: row_sum says what escapes
   std::size_t pairs_unblocked = 0;  ///< pairs that face each other, nothing in their shaft
   std::size_t pairs_sampled = 0;    ///< pairs whose visibility was sampled by rays
   unsigned long long rays = 0;
@@ -45,6 +46,10 @@ struct FormFactorMatrix {
 /// Memory that form_factor_matrix() takes for n patches [bytes]: n^2 floats and a few per cent.
 std::size_t form_factor_bytes(std::size_t n);
 
+/// What form_factor_matrix() checks first, for callers with long work before it.
+/// throws   InputError when the matrix would be larger than the limit, with its size and what to do instead.
+void require_matrix_fits(std::size_t patches, const FormFactorOptions& options = {});
+
 /// The full matrix: unblocked pairs by quadrature or closed form (triangle_to_triangle.h), pairs with something in
 /// their shaft by sampled visibility (sampled.h). Each pair is taken once and stored both ways by reciprocity.
 ///
@@ -53,7 +58,7 @@ std::size_t form_factor_bytes(std::size_t n);
 /// keeps A_i F_ij = A_j F_ji. A row counts as closed when none of its rays escapes, meets glass or a side that takes no
 /// part, and its sum is within its error of 1.
 ///
-/// throws   InputError when the matrix would be larger than the limit, with its size and what to do instead.
+/// throws   InputError when the matrix would be larger than the limit (require_matrix_fits).
 /// Threads: same bits for any thread count. Cost: n^2 / 2 pairs of 0.2 to 2 us.
 FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& rays,
                                     const FormFactorOptions& options = {}, const Monitor& monitor = {});

@@ -137,7 +137,8 @@ Solution FullMatrixSystem::finish(std::string method) const {
       solution.B.at(i, k) = radiosity;
       emitted[k] = area[i] * (M + E_direct_.at(i, k));
       absorbed[k] = area[i] * (1 - rho[c][i]) * E;
-      escaped[k] = area[i] * radiosity * (1 - F_.row_sum[i] * F_.row_gain(i));
+      // What a half-filled row does not place has not escaped: it is left over as imbalance.
+      if (F_.row_filled[i]) escaped[k] = area[i] * radiosity * (1 - F_.row_sum[i] * F_.row_gain(i));
     }
     const auto flux = [&](const Spectrum& s) { return channels_ == 1 ? s[0] : luminous_mean(s); };
     solution.energy.emitted += flux(emitted);

@@ -51,6 +51,8 @@ class FullMatrixSystem {
   double relative_residual() const;
 
   /// Runs sweep() + correct_ambient() until the residual is small; sweep() must leave B, FB and r up to date.
+  /// Of a matrix that was stopped half-way, the energy balance counts as escaped what filled rows lose only; what the
+  /// others could not place yet is its imbalance.
   template <class Sweep>
   Solution iterate(std::string method, const GatherOptions& options, const Monitor& monitor, Sweep sweep);
 

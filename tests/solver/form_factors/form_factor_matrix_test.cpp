@@ -101,6 +101,8 @@ TEST(FormFactorMatrix, ASealedNeighbourRoomGetsNothing) {
 TEST(FormFactorMatrix, RefusesMoreMemoryThanAllowedAndSaysWhatToDo) {
   const PatchSet patches = small_room().build();
   try {
+    require_matrix_fits(patches.patch_count(), {.memory_limit = form_factor_bytes(patches.patch_count())});
+    EXPECT_THROW(require_matrix_fits(patches.patch_count(), {.memory_limit = 1000}), InputError);
     form_factor_matrix(patches, RayScene(patches), {.memory_limit = 1000});
     FAIL() << "a matrix above the limit was made";
   } catch (const InputError& e) {

@@ -137,6 +137,17 @@ TEST_F(Gltf, LightsStandWhereTheirNodesAreAndOneLightMayStandTwice) {
   EXPECT_DOUBLE_EQ(scene.lights.suns[0].normal_irradiance[0], 10);
 }
 
+TEST_F(Gltf, LightBeyondWhatAResultCanHoldIsRefused) {
+  EXPECT_EQ(refused(gltf(R"({ "mesh": 0 })", R"("materials": [ { "name": "lamp", "emissiveFactor": [1, 1, 1],
+      "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1e300 } } } ])")),
+            "a.gltf: materials[0]: emissiveFactor x emissiveStrength = [1e+300, 1e+300, 1e+300] is outside [0, 1e+15]");
+  const std::string lamp =
+      gltf(R"({ "mesh": 0, "translation": [2, 0, 0], "extensions": { "KHR_lights_punctual": { "light": 0 } } })",
+           R"("materials": [ { "name": "paint" } ],
+         "extensions": { "KHR_lights_punctual": { "lights": [ { "type": "point", "intensity": 1e300 } ] } })");
+  EXPECT_EQ(refused(lamp), "a.gltf: lights[0]: color x intensity = [1e+300, 1e+300, 1e+300] is outside [0, 1e+15]");
+}
+
 TEST_F(Gltf, BlendedAndTransmittingMaterialsAreGlass) {
   const Scene blended = read(gltf(R"({ "mesh": 0 })", R"("materials": [ { "name": "pane", "alphaMode": "BLEND",
       "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 0.25] } } ])"));

@@ -70,6 +70,12 @@ TEST_F(Obj, MtlColoursAreReflectancesAndKeIsARadiance) {
   EXPECT_EQ(material(scene, "pane").transmittance, Spectrum(0.9));
 }
 
+TEST_F(Obj, KeBeyondWhatAResultCanHoldIsRefused) {
+  folder_.write("a.mtl", "newmtl lamp\nKe 1e300 0 0\n");
+  EXPECT_EQ(refusal(folder_.write("a.obj", "mtllib a.mtl\nusemtl lamp\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
+            "a.mtl:2: '1e300' is not a number from 0 to 1e+12");
+}
+
 TEST_F(Obj, WhiteIsTakenAsNearlyWhiteWithOneWarning) {
   folder_.write("a.mtl", "newmtl a\nKd 1 1 1\nnewmtl b\nKd 1 0 0\n");
   const Scene scene = read("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");

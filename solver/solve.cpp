@@ -39,6 +39,9 @@ int paths_per_point(const SolveOptions& options) {
 }
 
 Solution solve(const Problem& problem, const SolveOptions& options, const Monitor& monitor) {
+  // Before anything is computed: a matrix that does not fit is no news to wait for.
+  if (options.method == Method::gauss_seidel || options.method == Method::jacobi)
+    require_matrix_fits(problem.patches.patch_count());
   const Illumination light(problem);
   const int more = 1 << options.tighten;
   const DirectOptions direct_options{.lamp_rays = by_accuracy(options.accuracy, 16, 16, 64),

@@ -8,7 +8,7 @@
 namespace clerestory {
 
 struct MeshReport {
-  Vec3 lower, upper;  ///< extent of the model, scene frame [m]
+  Vec3 lower, upper;     ///< extent of the model, scene frame [m]
   double tolerance = 0;  ///< points closer than this to a line or plane were taken to lie on it [m]
   std::size_t input_faces = 0, input_triangles = 0;
   // Repairs, as counts.

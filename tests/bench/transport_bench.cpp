@@ -14,9 +14,7 @@
 namespace clerestory {
 namespace {
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void row(const char* what, double value, const char* unit, const char* bar) {
   std::printf("%s,%.4g,%s,%s\n", what, value, unit, bar);
@@ -73,8 +71,8 @@ int run() {
   mean /= area;
   row("progressive: rms difference of patches to path", 100 * std::sqrt(difference / area) / mean, "%", "5");
   row("path: standard error in that difference (upper bound)", 100 * std::sqrt(noise / area) / mean, "%", "");
-  row("path: a bounce and a shadow ray, each core", 2 * path_time * 1e6 / (static_cast<double>(reference.rays) / 2), "us",
-      "1.5");
+  row("path: a bounce and a shadow ray, each core", 2 * path_time * 1e6 / (static_cast<double>(reference.rays) / 2),
+      "us", "1.5");
   return 0;
 }
 

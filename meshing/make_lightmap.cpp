@@ -137,18 +137,12 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
       if (point == kNone) {
         point = static_cast<std::uint32_t>(map.position.size());
         map.position.push_back(x[k]);
-        map.normal.emplace_back();
         map.patch_of_point.push_back(p);
       }
-      map.normal[point] += patches.normal[p] * angle_at(x, k);
       // Seen from the back the corners run the other way.
       const std::uint32_t place = patches.side[p] == kFront ? k : (3 - k) % 3;
       map.corners[p][place] = point;
     }
-  }
-  for (std::size_t i = 0; i < map.position.size(); ++i) {
-    const Vec3 n = normalized(map.normal[i]);
-    map.normal[i] = n == Vec3{} ? patches.normal[map.patch_of_point[i]] : n;
   }
   place_samples(patches, map);
   map.E = Field(map.position.size(), patches.channels);

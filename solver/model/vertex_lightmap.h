@@ -15,7 +15,6 @@ namespace clerestory {
 struct VertexLightmap {
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< N, points, counter-clockwise from the lit side
   std::vector<Vec3> position;                         ///< P, local frame of the PatchSet [m]
-  std::vector<Vec3> normal;                           ///< P, unit, mean of the patches that share the point
   std::vector<std::uint32_t> patch_of_point;          ///< P, one of the patches that share the point
   Field E;                                            ///< P, irradiance [W/m2]; filled after the solve
   Field std_error;                                    ///< P, standard error of E; empty unless E is a random estimate

@@ -18,6 +18,22 @@ std::array<Vec3, 3> PatchSet::corner_positions(PatchId p) const {
   return {vertices[c[0]], vertices[c[2]], vertices[c[1]]};
 }
 
+PatchId PatchSet::patch_at(TriangleId t, Side s, double u, double v) const {
+  const PatchId root = side_patch[t][s];
+  if (splits.empty() || !root.valid()) return root;
+  // Corners of a patch run counter-clockwise seen from its side.
+  std::array<double, 3> weight = {1 - u - v, s == kFront ? u : v, s == kFront ? v : u};
+  std::uint32_t node = root.value;
+  while (splits[node].first_half != SplitNode::kNone) {
+    const std::size_t e = splits[node].edge;
+    const double start = weight[e], end = weight[(e + 1) % 3], apex = weight[(e + 2) % 3];
+    const bool second = end > start;
+    weight = second ? std::array{2 * start, end - start, apex} : std::array{start - end, 2 * end, apex};
+    node = splits[node].first_half + second;
+  }
+  return PatchId{std::size_t{splits[node].patch}};
+}
+
 double PatchSet::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
 
 void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {

@@ -16,8 +16,20 @@ namespace clerestory {
 /// Front is the side from which the corners run counter-clockwise.
 enum Side : std::uint8_t { kFront = 0, kBack = 1 };
 
+/// A node of the binary trees that halve patches. The halved edge runs from corner `edge` to the next one; half 0 keeps
+/// its start and gets the corners (start, middle, apex), half 1 its end: (middle, end, apex).
+struct SplitNode {
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint32_t first_half = kNone;  ///< node of half 0, half 1 follows it; kNone: not halved
+  std::uint32_t patch = kNone;       ///< PatchId, when it is not halved
+  std::uint8_t edge = 0;
+};
+
 /// A triangle always blocks light (glass: passes its share); its sides take part in transport as patches.
 /// All coordinates are relative to `origin`, so that float rays lose nothing in georeferenced models.
+///
+/// Patches may be finer than the triangles that rays meet: then triangle i carries patch i alone, on one of its sides,
+/// and `splits` tells which part of a ray's triangle is which patch (solver/hierarchy/element_mesh.h).
 struct PatchSet {
   Vec3 origin;       ///< of the local frame, in the scene's frame [m]
   int channels = 1;  ///< 1 or 3
@@ -27,7 +39,9 @@ struct PatchSet {
   std::vector<std::array<VertexId, 3>> corners;          ///< T
   std::vector<std::array<MaterialId, 2>> side_material;  ///< T, by Side
   std::vector<std::array<SurfaceId, 2>> side_surface;    ///< T, by Side
-  std::vector<std::array<PatchId, 2>> side_patch;        ///< T, by Side; invalid where that side takes no part
+  std::vector<std::array<PatchId, 2>> side_patch;  ///< by triangle of the rays and Side; invalid where that side takes
+                                                   ///< no part; the root in `splits` when there are any
+  std::vector<SplitNode> splits;  ///< the first are the patches before any was halved; empty: rays meet whole patches
   std::vector<bool> joined;  ///< T, or empty for none: two faces lie here back to back, so the back is a front as well
 
   // N patches.
@@ -46,6 +60,8 @@ struct PatchSet {
   MaterialId material(PatchId p) const { return side_material[triangle[p]][side[p]]; }
   SurfaceId surface(PatchId p) const { return side_surface[triangle[p]][side[p]]; }
   bool is_glass(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::glass; }
+  /// The patch that a ray meets in its triangle t (T counted before splits), at barycentric weights u, v of corners 1, 2.
+  PatchId patch_at(TriangleId t, Side side, double u, double v) const;
   /// Corner positions of patch p, counter-clockwise seen from its side.
   std::array<Vec3, 3> corner_positions(PatchId p) const;
   double total_area() const;

@@ -14,6 +14,10 @@ namespace clerestory {
 /// that side of it: not around corners, not over rims, not past a partition that stands on it, not across materials.
 struct VertexLightmap {
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< N, points, counter-clockwise from the lit side
+  /// N, by edge k from corner k to the next: the patch met first when turning off this patch's side over that edge,
+  /// around corners and rims too; kNone at an open end.
+  std::vector<std::array<std::uint32_t, 3>> neighbour;
+  static constexpr std::uint32_t kNone = 0xffffffff;
   std::vector<Vec3> position;                         ///< P, local frame of the PatchSet [m]
   std::vector<std::uint32_t> patch_of_point;          ///< P, one of the patches that share the point
   Field E;                                            ///< P, irradiance [W/m2]; filled after the solve

@@ -149,7 +149,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
         hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
         const float along = packet.hit.Ng_x[k] * packet.ray.dir_x[k] + packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
                             packet.hit.Ng_z[k] * packet.ray.dir_z[k];
-        hit.patch = patches.side_patch[hit.triangle][along < 0 ? kFront : kBack];
+        hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, packet.hit.u[k], packet.hit.v[k]);
       }
       if (has_glass()) {
         const Ray& ray = rays[first + k];
@@ -168,7 +168,7 @@ Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray) const {
   if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
     hit.triangle = TriangleId{impl_->opaque.of_primitive[r.hit.primID]};
     const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
-    hit.patch = patches.side_patch[hit.triangle][along < 0 ? kFront : kBack];
+    hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, r.hit.u, r.hit.v);
   }
   if (has_glass()) hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
   return hit;

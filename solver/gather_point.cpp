@@ -58,7 +58,7 @@ class Bundle {
         if (lamp_rays > 0 && light_.lamps.is_explicit(hit.patch)) {
           const double cos_patch = -dot(problem.patches.normal[hit.patch], directions[k]);
           const double bundle = density[k] * dot(frame_.n, directions[k]) / std::numbers::pi;
-          const double lamp = lamp_rays * light_.lamps.density(hit.patch, hit.distance, cos_patch, true);
+          const double lamp = lamp_rays * light_.lamps.density(hit.patch, p_, frame_.n, hit.distance, cos_patch, true);
           back *= bundle / (bundle + lamp);
         }
         values[k] = back * hit.transmittance;

@@ -11,59 +11,64 @@
 
 namespace clerestory {
 
-/// A forest over the patches: an element is a patch or a half of an element, halved at its longest edge. Neighbours across
-/// that edge are halved with it (first at their own longest edges, until it is theirs too), so the leaves conform on
-/// every side of every surface; front and back of a sheet are halved apart. Angles stay above half of the patches'.
-/// Source: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques", 1984.
+/// A forest over the patches: an element is a patch or a half of an element, halved at its longest edge. Neighbours
+/// across that edge are halved with it (first at their own longest edges, until it is theirs too), so the leaves
+/// conform on every side of every surface; front and back of a sheet are halved apart. Angles stay above half of the
+/// patches'. Source: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques",
+/// 1984.
 class ElementMesh {
  public:
-  /// patches  not halved yet; both outlive the mesh.
+  /// patches  not halved yet; map: their lightmap, of which E is not used. Both outlive the mesh.
   ElementMesh(const PatchSet& patches, const VertexLightmap& map);
 
-  /// An element: leaf or halved. Elements 0 .. patch_count() - 1 are the patches; halves are appended in pairs.
+  /// A leaf or a halved one. Elements 0 .. patch_count() - 1 are the patches; halves are appended in pairs.
   struct Element {
-    std::array<std::uint32_t, 3> vertex;     ///< into vertices(), counter-clockwise from the lit side
-    std::array<std::uint32_t, 3> point;      ///< into points()
-    std::array<std::uint32_t, 3> neighbour;  ///< leaf across edge k (corner k to k + 1), VertexLightmap::kNone: none
-    std::uint32_t patch;                     ///< it is part of
-    std::uint32_t first_half = SplitNode::kNone;
-    std::uint8_t edge = 0;   ///< corner where its longest edge starts
-    std::uint8_t level = 0;  ///< halvings since the patch
+    std::array<std::uint32_t, 3> vertex;  ///< geometry, counter-clockwise from the lit side
+    std::array<std::uint32_t, 3> point;   ///< of the lightmap: shared only where the surface is smooth
+    /// Of a leaf: the leaf across edge k, from corner k to the next; VertexLightmap::kNone where there is none.
+    std::array<std::uint32_t, 3> neighbour;
+    std::uint32_t patch;                          ///< it is part of
+    std::uint32_t first_half = SplitNode::kNone;  ///< the other half follows it
+    std::uint8_t edge = 0;                        ///< corner where its longest edge starts
+    std::uint8_t level = 0;                       ///< halvings since the patch
     bool is_leaf() const { return first_half == SplitNode::kNone; }
   };
   std::size_t size() const { return elements_.size(); }
+  std::size_t leaf_count() const { return leaf_count_; }
   const Element& operator[](std::size_t e) const { return elements_[e]; }
-  const std::vector<Vec3>& vertices() const { return vertices_; }
-  std::size_t point_count() const { return position_.size(); }
-  const Vec3& point_position(std::size_t p) const { return position_[p]; }
-  std::array<Vec3, 3> corners(std::size_t e) const;
-  std::size_t leaf_count() const { return leaves_; }
+  std::array<Vec3, 3> corner_positions(std::size_t e) const;
+  /// Length of edge k of element e [m].
+  double edge_length(std::size_t e, std::size_t k) const;
+  const PatchSet& patches() const { return patches_; }
 
   /// Halves each of the given elements that is still a leaf, and what conformity asks for.
   void split(std::span<const std::uint32_t> marked);
 
-  /// Ends of the edge that each point beyond the lightmap's own stands in the middle of: [point - points of the map].
-  const std::vector<std::array<std::uint32_t, 2>>& parents() const { return parents_; }
+  /// All points: those of the lightmap, then middles in the order they were made, with their places for samples.
+  const VertexLightmap& points() const { return points_; }
+  /// Points at the ends of the edge in whose middle point p stands; p is not one of the lightmap's own.
+  const std::array<std::uint32_t, 2>& ends(std::size_t p) const { return ends_[p - first_middle_]; }
 
-  /// The leaves as patches, in the order of the patches they are part of, each side's triangles its own; `splits` tells
-  /// rays of the original triangles which leaf they meet.
-  PatchSet leaf_patches() const;
-  /// Elements by leaf patch, in the order of leaf_patches().
+  /// Elements that are leaves, patch by patch: element of leaf patch i.
   std::vector<std::uint32_t> leaves() const;
-  /// Lightmap of leaf_patches(): same points, new ones after the old. E is sized and zero.
+  /// The leaves as patches in that order, each on a triangle of its own; `splits` tells rays which leaf they meet.
+  PatchSet leaf_patches() const;
+  /// Lightmap of leaf_patches(); E is sized P x channels and zero.
   VertexLightmap leaf_lightmap() const;
-  /// Where irradiance is gathered for the new points `first` and up; see VertexLightmap.
-  // (samples of new points are kept in the mesh as they are made)
 
  private:
-  std::uint32_t middle_of(std::uint32_t element, std::uint8_t edge);
-  void halve(std::uint32_t element);
+  void find_longest_edge(Element& e) const;
+  std::size_t edge_towards(std::uint32_t element, std::uint32_t from, std::uint32_t to) const;
+  void halve_with_neighbour(std::uint32_t element);
+  void halve(std::uint32_t element, std::uint32_t vertex, std::uint32_t point);
+  std::uint32_t add_point(std::uint32_t element, std::uint32_t other, const Vec3& middle);
+
   const PatchSet& patches_;
-  const VertexLightmap& map_;
   std::vector<Element> elements_;
-  std::vector<Vec3> vertices_, position_;
-  std::vector<std::array<std::uint32_t, 2>> parents_;
-  std::size_t leaves_ = 0;
+  std::vector<Vec3> vertices_;
+  VertexLightmap points_;  ///< position and samples only
+  std::vector<std::array<std::uint32_t, 2>> ends_;
+  std::size_t first_middle_ = 0, leaf_count_ = 0;
 };
 
 }  // namespace clerestory

@@ -111,7 +111,8 @@ LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, doub
   return {};
 }
 
-double LightSampler::density(PatchId q, double distance, double cos_q, bool emitters_only) const {
+double LightSampler::density(PatchId q, const Vec3& /*p*/, const Vec3& /*n*/, double distance, double cos_q,
+                             bool emitters_only) const {
   if (!(cos_q > 0)) return 0;
   const double share = share_of_patch_[q] / (emitters_only ? emitters_share_ : 1.0);
   return share * distance * distance / (cos_q * problem_.patches.area[q]);

@@ -36,9 +36,9 @@ class LightSampler {
   /// Glowing patches only when `emitters_only`.
   LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool emitters_only) const;
 
-  /// Density per solid angle with which sample() would choose the direction from p that ends on the explicit patch q
-  /// at `distance`, `cos_q` being the cosine there.
-  double density(PatchId q, double distance, double cos_q, bool emitters_only) const;
+  /// Density per solid angle with which sample() would choose, at p with normal n, the direction that ends on the
+  /// explicit patch q at `distance`, `cos_q` being the cosine there.
+  double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q, bool emitters_only) const;
 
   /// Irradiance at p of luminaires without extent and of the sun: a shadow ray to each lamp, sun_rays to each sun.
   Spectrum small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;

@@ -48,7 +48,8 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const std::array<
       double weight = 1;
       if (light.lamps.is_explicit(hit.patch)) {
         const double bundle = dot(n, d) / std::numbers::pi;
-        const double lamp = light.lamps.density(hit.patch, hit.distance, -dot(patches.normal[hit.patch], d), false);
+        const double cos_patch = -dot(patches.normal[hit.patch], d);
+        const double lamp = light.lamps.density(hit.patch, p, n, hit.distance, cos_patch, false);
         weight = bundle / (bundle + lamp);
       }
       E += throughput * M * weight;

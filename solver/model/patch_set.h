@@ -60,7 +60,8 @@ struct PatchSet {
   MaterialId material(PatchId p) const { return side_material[triangle[p]][side[p]]; }
   SurfaceId surface(PatchId p) const { return side_surface[triangle[p]][side[p]]; }
   bool is_glass(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::glass; }
-  /// The patch that a ray meets in its triangle t (T counted before splits), at barycentric weights u, v of corners 1, 2.
+  /// The patch that a ray meets in its triangle t (T counted before splits), at barycentric weights u, v of corners
+  /// 1, 2.
   PatchId patch_at(TriangleId t, Side side, double u, double v) const;
   /// Corner positions of patch p, counter-clockwise seen from its side.
   std::array<Vec3, 3> corner_positions(PatchId p) const;

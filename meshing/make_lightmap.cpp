@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "solver/model/disjoint_sets.h"
 
@@ -29,6 +30,9 @@ struct Blade {
 Side side_towards(const HalfEdge& e, bool counter_clockwise) {
   return e.ascending == counter_clockwise ? kFront : kBack;
 }
+
+/// The edge of the patch on one side of e's triangle, counted by the patch's corners.
+std::size_t edge_of_patch(const HalfEdge& e, Side side) { return side == kFront ? e.from : 2u - e.from; }
 
 double angle_at(const std::array<Vec3, 3>& x, std::size_t k) {
   const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
@@ -80,7 +84,12 @@ void place_samples(const PatchSet& patches, VertexLightmap& map) {
 }  // namespace
 
 VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
+  if (!patches.splits.empty())
+    throw std::logic_error("make_lightmap: halved patches have ElementMesh::leaf_lightmap()");
   const std::size_t triangles = patches.triangle_count(), count = patches.patch_count();
+  constexpr std::uint32_t kNone = VertexLightmap::kNone;
+  VertexLightmap map;
+  map.neighbour.assign(count, {kNone, kNone, kNone});
   std::vector<HalfEdge> edges;
   edges.reserve(3 * triangles);
   for (std::uint32_t t = 0; t < triangles; ++t)
@@ -106,12 +115,15 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
       blades.push_back({std::atan2(dot(apex, around.b), dot(apex, around.t)), &edges[k]});
     }
     std::stable_sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) { return a.angle < b.angle; });
-    // One blade alone has a rim: its front and its back meet there and do not go on smoothly.
-    for (std::size_t k = 0; blades.size() > 1 && k < blades.size(); ++k) {
+    for (std::size_t k = 0; k < blades.size(); ++k) {
       const HalfEdge &here = *blades[k].edge, &next = *blades[(k + 1) % blades.size()].edge;
-      const PatchId p = patches.side_patch[here.triangle][side_towards(here, true)];
-      const PatchId q = patches.side_patch[next.triangle][side_towards(next, false)];
-      if (!p.valid() || !q.valid() || patches.material(p) != patches.material(q) ||
+      const Side side = side_towards(here, true), next_side = side_towards(next, false);
+      const PatchId p = patches.side_patch[here.triangle][side], q = patches.side_patch[next.triangle][next_side];
+      if (!p.valid() || !q.valid()) continue;
+      map.neighbour[p][edge_of_patch(here, side)] = q.value;
+      map.neighbour[q][edge_of_patch(next, next_side)] = p.value;
+      // One blade alone has a rim: its front and its back meet there and do not go on smoothly.
+      if (blades.size() == 1 || patches.material(p) != patches.material(q) ||
           dot(patches.normal[p], patches.normal[q]) < least_cosine)
         continue;
       const auto corner = [&](PatchId patch, const HalfEdge& e, bool at_low) -> Corner {
@@ -124,9 +136,7 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
     begin = end;
   }
 
-  VertexLightmap map;
   map.corners.resize(count);
-  constexpr std::uint32_t kNone = 0xffffffff;
   std::vector<std::uint32_t> point_of(3 * count, kNone);
   for (std::uint32_t p = 0; p < count; ++p) {
     const TriangleId t = patches.triangle[p];

@@ -10,6 +10,7 @@ namespace clerestory {
 /// in angular order: the patch met first when turning off patch p's side over the edge is its neighbour there, so a
 /// partition standing on a floor parts the floor, and a sheet's rim parts front from back.
 ///
+/// patches     not halved: `splits` is empty.
 /// crease_deg  neighbours whose normals differ by more than this do not share points [deg].
 /// returns     E is sized P x channels and zero.
 VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg = 30);

@@ -1,8 +1,10 @@
 #include "meshing/make_lightmap.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -165,6 +167,105 @@ TEST(MakeLightmap, SamplesOfASmoothRoofLieOnItsFacetsAndNotUnderThem) {
     weights += map.sample_weight[s];
   }
   EXPECT_NEAR(weights, 1, 1e-12);
+}
+
+/// Each neighbour names the patch back, over an edge between the same two places.
+void expect_mutual(const PatchSet& p, const VertexLightmap& map) {
+  ASSERT_EQ(map.neighbour.size(), p.patch_count());
+  for (std::uint32_t i = 0; i < p.patch_count(); ++i) {
+    const auto here = p.corner_positions(PatchId{i});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t q = map.neighbour[i][k];
+      if (q == VertexLightmap::kNone) continue;
+      const auto there = p.corner_positions(PatchId{q});
+      int mutual = 0;
+      for (std::size_t j = 0; j < 3; ++j)
+        mutual += map.neighbour[q][j] == i && there[j] == here[(k + 1) % 3] && there[(j + 1) % 3] == here[k];
+      EXPECT_EQ(mutual, 1) << "patch " << i << ", edge " << k;
+    }
+  }
+}
+
+TEST(MakeLightmap, EveryEdgeOfAClosedBoxHasANeighbourThatSeesTheSameRoom) {
+  SceneMaker maker;
+  maker.box({0, 0, 0}, {2, 1, 1});
+  const PatchSet p = mesh(maker, 0.6);
+  const VertexLightmap map = make_lightmap(p);
+  expect_mutual(p, map);
+  for (std::uint32_t i = 0; i < p.patch_count(); ++i)
+    for (const std::uint32_t q : map.neighbour[i]) {
+      ASSERT_NE(q, VertexLightmap::kNone);
+      const auto looks_in = [&](std::uint32_t k) {
+        const auto x = p.corner_positions(PatchId{k});
+        return dot(x[0] + x[1] + x[2], p.normal[k]) < 0;  // the box stands around the origin
+      };
+      EXPECT_EQ(looks_in(i), looks_in(q));
+    }
+}
+
+TEST(MakeLightmap, ARimTurnsOverToTheSheetsOwnBack) {
+  SceneMaker maker;
+  maker.polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  PatchSet p = mesh(maker, 0.4);
+  const VertexLightmap map = make_lightmap(p);
+  expect_mutual(p, map);
+  std::size_t rims = 0;
+  for (std::uint32_t i = 0; i < p.patch_count(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto x = p.corner_positions(PatchId{i});
+      const Vec3 middle = (x[k] + x[(k + 1) % 3]) / 2;
+      const bool on_rim = std::max(std::abs(middle.x), std::abs(middle.y)) > 0.5 - 1e-9;
+      rims += on_rim;
+      const std::uint32_t q = map.neighbour[i][k];
+      ASSERT_NE(q, VertexLightmap::kNone);
+      EXPECT_EQ(p.triangle[q] == p.triangle[i], on_rim);
+      EXPECT_EQ(dot(p.normal[q], p.normal[i]), on_rim ? -1 : 1);
+    }
+  EXPECT_GE(rims, 2 * 4 * 3u);
+
+  std::vector<bool> fronts(2 * p.triangle_count(), false);
+  for (std::size_t t = 0; t < p.triangle_count(); ++t) fronts[2 * t + kFront] = true;
+  make_patches(p, fronts);
+  std::size_t open = 0;
+  for (const auto& neighbour : make_lightmap(p).neighbour)
+    open += static_cast<std::size_t>(std::count(neighbour.begin(), neighbour.end(), VertexLightmap::kNone));
+  EXPECT_EQ(open, rims / 2) << "a back that takes no part is nobody's neighbour";
+}
+
+TEST(MakeLightmap, AFloorTurnsUpThePartitionThatStandsOnItAndRunsOnBelow) {
+  SceneMaker maker;
+  maker.polygon({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+  maker.polygon({{0, -1, 0}, {0, 1, 0}, {0, 1, 1}, {0, -1, 1}});
+  const PatchSet p = mesh(maker, 0.3);
+  const VertexLightmap map = make_lightmap(p);
+  expect_mutual(p, map);
+  std::size_t on_the_line = 0;
+  for (std::uint32_t i = 0; i < p.patch_count(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto x = p.corner_positions(PatchId{i});
+      const auto on_line = [&](const Vec3& v) {
+        return std::abs(v.x + p.origin.x) < 1e-9 && std::abs(v.z + p.origin.z) < 1e-9;
+      };
+      if (!on_line(x[k]) || !on_line(x[(k + 1) % 3])) continue;
+      ++on_the_line;
+      const Vec3 n = p.normal[i], m = p.normal[map.neighbour[i][k]];
+      const double way = (x[0] + x[1] + x[2]).x / 3 + p.origin.x > 0 ? 1 : -1;  // from the line to a floor patch
+      if (n.z > 0.5)
+        EXPECT_NEAR(m.x, way, 1e-9) << "the partition's side that looks over this floor";
+      else if (n.z < -0.5)
+        EXPECT_NEAR(m.z, -1, 1e-9) << "below nothing stands";
+      else
+        EXPECT_NEAR(m.z, 1, 1e-9) << "from the partition down on the floor";
+    }
+  EXPECT_GE(on_the_line, 6 * 7u);
+}
+
+TEST(MakeLightmap, HalvedPatchesAreRefused) {
+  SceneMaker maker;
+  maker.box({0, 0, 0}, {1, 1, 1});
+  PatchSet p = mesh(maker, 2);
+  p.splits.resize(p.patch_count());
+  EXPECT_THROW(make_lightmap(p), std::logic_error);
 }
 
 TEST(MakeLightmap, AveragesByArea) {

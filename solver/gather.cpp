@@ -12,28 +12,19 @@ namespace {
 
 enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
 
-GatherQuality sensor_quality(const SolveOptions& options) {
+GatherQuality quality(const SolveOptions& options, int rays, int most_rays, int lamp_rays, int sun_rays) {
   const int more = 1 << options.tighten;
-  switch (options.accuracy) {
-    case Accuracy::draft:
-      return {16, 768 * more, 128, 16};
-    case Accuracy::standard:
-      return {32, 3072 * more, 256, 32};
-    case Accuracy::fine:
-      return {48, 9216 * more, 1024, 64};
-  }
-  return {};
+  return {.rays = rays * more, .most_rays = most_rays * more, .lamp_rays = lamp_rays, .sun_rays = sun_rays};
 }
 
-GatherQuality vertex_quality(const SolveOptions& options) {
-  const int more = 1 << options.tighten;
+GatherQuality sensor_quality(const SolveOptions& options) {
   switch (options.accuracy) {
     case Accuracy::draft:
-      return {12, 144 * more, 64, 8};
+      return quality(options, 256, 512, 64, 16);
     case Accuracy::standard:
-      return {16, 768 * more, 128, 16};
+      return quality(options, 512, 2048, 128, 32);
     case Accuracy::fine:
-      return {32, 3072 * more, 256, 32};
+      return quality(options, 1024, 8192, 256, 64);
   }
   return {};
 }
@@ -50,7 +41,7 @@ struct Place {
 /// Calls done(index, E, std_error) for each place, from several threads.
 template <class PlaceOf, class Done>
 unsigned long long gather(const Illumination& light, const Solution& solution, std::size_t count,
-                          const PlaceOf& place_of, const GatherQuality& quality, int paths, std::uint64_t key,
+                          const PlaceOf& place_of, const GatherPattern& pattern, int paths, std::uint64_t key,
                           std::string_view stage, const Monitor& monitor, const Done& done) {
   const bool by_paths = !solution.std_error.value.empty();
   std::vector<unsigned long long> rays(count, 0);
@@ -64,7 +55,7 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
           const auto [E, std_error] = trace_paths_at_point(light, at.p, at.n, stream_key(key, i), paths, rays[i]);
           done(i, E, std_error);
         } else {
-          done(i, gather_point(light, at.p, at.n, quality, stream_key(key, i), rays[i]), Spectrum(0.0));
+          done(i, gather_point(light, at.p, at.n, pattern, rays[i]).E, Spectrum(0.0));
         }
       }
     });
@@ -75,6 +66,21 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
 }
 
 }  // namespace
+
+GatherQuality vertex_quality(const SolveOptions& options) {
+  switch (options.accuracy) {
+    case Accuracy::draft: {
+      GatherQuality coarse = quality(options, 64, 64, 32, 8);
+      coarse.grid = 8;
+      return coarse;
+    }
+    case Accuracy::standard:
+      return quality(options, 256, 768, 128, 16);
+    case Accuracy::fine:
+      return quality(options, 1024, 3072, 256, 32);
+  }
+  return {};
+}
 
 PointIrradiance gather_at_sensors(const Problem& problem, const Solution& solution, std::span<const SensorPoint> points,
                                   const SolveOptions& options, const Monitor& monitor) {
@@ -89,7 +95,7 @@ PointIrradiance gather_at_sensors(const Problem& problem, const Solution& soluti
         const Vec3 n = points[i].normal;
         return Place{points[i].position - problem.patches.origin + n * (2 * problem.rays.lift()), n};
       },
-      sensor_quality(options), 4 * paths_per_point(options), stream_key(options.seed, kSensorRays), "sensors", monitor,
+      GatherPattern(sensor_quality(options), options.seed), 4 * paths_per_point(options), stream_key(options.seed, kSensorRays), "sensors", monitor,
       [&](std::size_t i, const Spectrum& E, const Spectrum& error) {
         result.E.set(i, E);
         if (!result.std_error.value.empty()) result.std_error.set(i, error);
@@ -112,7 +118,7 @@ unsigned long long gather_at_points(const Problem& problem, const Solution& solu
         const Vec3 n = lightmap.sample_normal[i];
         return Place{lightmap.sample_position[i] + n * problem.rays.lift(), n};
       },
-      vertex_quality(options), paths_per_point(options), stream_key(options.seed, kVertexRays), "vertices", monitor,
+      GatherPattern(vertex_quality(options), options.seed), paths_per_point(options), stream_key(options.seed, kVertexRays), "vertices", monitor,
       [&](std::size_t i, const Spectrum& value, const Spectrum& error) {
         E.set(i, value);
         if (!std_error.value.empty()) std_error.set(i, error);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/gather_pattern.h"
 #include "solver/model/monitor.h"
 #include "solver/model/sensors.h"
 #include "solver/model/solution.h"
@@ -13,6 +14,9 @@
 #include "solver/solve.h"
 
 namespace clerestory {
+
+/// Rays of a vertex.
+GatherQuality vertex_quality(const SolveOptions& options);
 
 /// Irradiance [W/m2] at points, P x channels.
 struct PointIrradiance {

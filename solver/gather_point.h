@@ -1,28 +1,38 @@
 #pragma once
 // Final gather: irradiance at one point, from lights and a solved radiosity.
 
+#include <cstdint>
+#include <vector>
+
+#include "solver/gather_pattern.h"
 #include "solver/lights/illumination.h"
 
 namespace clerestory {
 
-/// How many rays a point gets. Defaults suit a sensor.
-struct GatherQuality {
-  int grid = 32;       ///< the hemisphere is a grid x grid of strata, a multiple of 4
-  int rays = 3072;     ///< that count, at least grid x grid; the surplus goes where the pilot saw differences
-  int lamp_rays = 64;  ///< shadow rays to bright patches, a multiple of 16
-  int sun_rays = 16;   ///< to each sun
+/// Irradiance [W/m2] at a point.
+struct PointLight {
+  Spectrum E;             ///< from everything
+  Spectrum small_lights;  ///< from luminaires without extent and suns; part of E
 };
 
-/// Irradiance [W/m2] at p (lifted) on a plane of unit normal n.
+/// Rays for each stratum as powers of 2: where a pilot's ray and its neighbours' come back alike, the least. A pilot's
+/// values are used for nothing else, as an adaptive sum that keeps them is biased; its choice serves points nearby too.
+using RayShares = std::vector<std::uint8_t>;
+RayShares share_rays(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                     unsigned long long& rays);
+
+/// Irradiance at p (lifted) on a plane of unit normal n.
 ///
 /// Luminaires and sun by shadow rays; bright patches, glowing or lit, by shadow rays and by the bundle, weighted by the
-/// balance heuristic. For the rest a pilot sends one ray into each stratum, only to see where its neighbours differ;
-/// then fresh rays, at least one a stratum, look up B (or the sky) where they land. The pilot's values are thrown away:
-/// an adaptive sum that keeps them is biased.
+/// balance heuristic. The rest by a bundle that looks up B (or the sky) where its rays land.
 ///
-/// light  made with the radiosity B of the patches.
-/// key    of the random stream.
-Spectrum gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherQuality& quality,
-                      std::uint64_t key, unsigned long long& rays);
+/// light   made with the radiosity B of the patches.
+/// shares  from share_rays() at this point or near it; empty: the least everywhere.
+PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                        const RayShares& shares, unsigned long long& rays);
+
+/// The same with a pilot of its own, where the quality asks for one.
+PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                        unsigned long long& rays);
 
 }  // namespace clerestory

@@ -53,6 +53,7 @@ std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, dou
   constexpr std::uint64_t kNoisyPatches = 0x81;
   const PatchSet& patches = problem.patches;
   const Illumination light(problem, solution.B);
+  const GatherPattern pattern(quality, seed);
   const std::vector<std::uint32_t> noisy = noisy_patches(problem, solution, fewest);
 
   // All from the same B: which patch is gathered first must not matter.
@@ -69,7 +70,7 @@ std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, dou
         const double u = random.uniform(), v = random.uniform();
         const Vec3 n = patches.normal[i];
         const Vec3 p = point_on_triangle(patches.corner_positions(i), u, v) + n * problem.rays.lift();
-        E.set(i, gather_point(light, p, n, quality, mix_bits(key), rays[k]));
+        E.set(i, gather_point(light, p, n, pattern, rays[k]).E);
       }
     });
   }

@@ -22,7 +22,7 @@ TEST(GatherPoint, IsExactInAFurnace) {
   Field B(patches.patch_count(), 1);
   for (double& b : B.value) b = 6;
   unsigned long long traced = 0;
-  const Spectrum E = gather_point(Illumination(problem, B), {0.5, 0.5, rays.lift()}, {0, 0, 1}, {}, 1, traced);
+  const Spectrum E = gather_point(Illumination(problem, B), {0.5, 0.5, rays.lift()}, {0, 0, 1}, GatherPattern({}, 1), traced).E;
   EXPECT_NEAR(E[0], 6, 1e-9);
 }
 
@@ -46,7 +46,8 @@ TEST(GatherPoint, OfASmallLampAndASmallWindowHasNoBias) {
   constexpr int kRepeats = 400;
   unsigned long long traced = 0;
   for (std::uint64_t k = 0; k < kRepeats; ++k) {
-    const double E = gather_point(Illumination(problem, B), p, n, {16, 512, 32, 16}, stream_key(8, k), traced)[0];
+    const GatherPattern pattern({.grid = 16, .rays = 256, .most_rays = 512, .lamp_rays = 32}, stream_key(8, k));
+    const double E = gather_point(Illumination(problem, B), p, n, pattern, traced).E[0];
     sum += E, squares += E * E;
   }
   const double estimate = sum / kRepeats;

@@ -1,0 +1,188 @@
+#include "solver/hierarchy/vertex_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/gather_point.h"
+#include "solver/model/parallel.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+/// The darkest irradiance whose relative error counts, as share of the mean.
+constexpr double kDark = 0.02;
+constexpr int kMostRounds = 40;
+
+/// Gathers at points [begin, all), in parallel.
+class Gatherer {
+ public:
+  Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options)
+      : light_(problem, B),
+        pattern_(options.quality, options.seed),
+        mesh_(mesh),
+        // Where no sky looks in, bright patches are the sharpest contrast, and those have rays of their own.
+        pilots_(pattern_.deepest() > pattern_.least() && !light_.sky.dark()) {}
+
+  /// False when the monitor stopped it; field.reached then tells how far it came.
+  bool gather(VertexField& field, const Monitor& monitor) {
+    const VertexLightmap& at = mesh_.points();
+    const std::size_t begin = field.reached, end = at.position.size();
+    const int channels = light_.problem.patches.channels;
+    field.E.value.resize(end * static_cast<std::size_t>(channels));
+    field.small_lights.value.resize(field.E.value.size());
+    if (pilots_) {
+      const std::size_t own = pilot_of_.empty() ? end : pilot_of_.size();
+      for (std::size_t p = pilot_of_.size(); p < end; ++p)
+        pilot_of_.push_back(p < own ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
+      shares_.resize(own);
+    }
+    std::vector<unsigned long long> rays(end - begin, 0);
+    constexpr std::size_t kBlock = 4096;
+    for (std::size_t first = begin; first < end; first += kBlock) {
+      if (monitor.should_stop()) return false;
+      monitor.report("vertices", static_cast<double>(first) / static_cast<double>(end));
+      const std::size_t last = std::min(first + kBlock, end);
+      parallel_for(last - first, 16, [&](std::size_t from, std::size_t to) {
+        for (std::size_t p = first + from; p < first + to; ++p) gather_at(p, field, rays[p - begin]);
+      });
+      field.reached = last;
+    }
+    for (const auto r : rays) field.rays += r;
+    return true;
+  }
+
+ private:
+  void gather_at(std::size_t p, VertexField& field, unsigned long long& rays) {
+    const VertexLightmap& at = mesh_.points();
+    PointLight mean;
+    for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
+      const Vec3 n = at.sample_normal[s], x = at.sample_position[s] + n * light_.problem.rays.lift();
+      static const RayShares kNone;
+      const RayShares* shares = &kNone;
+      if (pilots_) {
+        RayShares& own = shares_[pilot_of_[p]];
+        if (own.empty() && pilot_of_[p] == p) own = share_rays(light_, x, n, pattern_, rays);
+        shares = &own;
+      }
+      const PointLight here = gather_point(light_, x, n, pattern_, *shares, rays);
+      mean.E += here.E * at.sample_weight[s];
+      mean.small_lights += here.small_lights * at.sample_weight[s];
+    }
+    field.E.set(p, mean.E);
+    field.small_lights.set(p, mean.small_lights);
+  }
+
+  const Illumination light_;
+  const GatherPattern pattern_;
+  const ElementMesh& mesh_;
+  bool pilots_;
+  std::vector<std::uint32_t> pilot_of_;  ///< by point: the one that sent a pilot for it
+  std::vector<RayShares> shares_;        ///< by point that sent a pilot
+};
+
+/// Gradient at each point of what E is there, averaged over the leaves around it.
+std::vector<Vec3> gradients(const ElementMesh& mesh, const std::vector<std::uint32_t>& leaves,
+                            const std::vector<double>& E) {
+  std::vector<Vec3> gradient(E.size());
+  std::vector<double> weight(E.size());
+  for (const std::uint32_t leaf : leaves) {
+    const auto& e = mesh[leaf];
+    const auto x = mesh.corner_positions(leaf);
+    const Vec3 n = cross(x[1] - x[0], x[2] - x[0]);
+    const double twice_area = length(n);
+    if (!(twice_area > 0)) continue;
+    Vec3 g;
+    for (std::size_t k = 0; k < 3; ++k) g += cross(n, x[(k + 2) % 3] - x[(k + 1) % 3]) * E[e.point[k]];
+    // g is the gradient times the square of 2 A; weighted by area, 2 A is left.
+    for (const std::uint32_t p : e.point) gradient[p] += g / twice_area, weight[p] += twice_area;
+  }
+  for (std::size_t p = 0; p < gradient.size(); ++p)
+    if (weight[p] > 0) gradient[p] = gradient[p] / weight[p];
+  return gradient;
+}
+
+/// How far the middle of edge k lies off the straight line between its ends.
+double bulge(const std::array<Vec3, 3>& x, const std::array<std::uint32_t, 3>& point, const std::vector<Vec3>& gradient,
+             std::size_t k) {
+  const std::size_t next = (k + 1) % 3;
+  return dot(gradient[point[k]] - gradient[point[next]], x[next] - x[k]) / 8;
+}
+
+struct Candidate {
+  double error;  ///< relative to the irradiance there [1]
+  std::uint32_t leaf;
+};
+
+/// Leaves that interpolate worse than the tolerance, the worst first.
+std::vector<Candidate> too_coarse(const ElementMesh& mesh, const Field& field_E, const FieldOptions& options) {
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  std::vector<double> E(field_E.size());
+  for (std::size_t p = 0; p < E.size(); ++p) E[p] = luminous_mean(field_E[p]);
+  double flux = 0, area = 0;
+  for (const std::uint32_t leaf : leaves) {
+    const auto& e = mesh[leaf];
+    const double a = std::ldexp(mesh.patches().area[e.patch], -e.level);
+    flux += a * (E[e.point[0]] + E[e.point[1]] + E[e.point[2]]) / 3;
+    area += a;
+  }
+  const double dark = area > 0 ? kDark * flux / area : 0;
+  const std::vector<Vec3> gradient = gradients(mesh, leaves, E);
+  std::vector<Candidate> worst;
+  for (const std::uint32_t leaf : leaves) {
+    const auto& e = mesh[leaf];
+    if (!(mesh.edge_length(leaf, e.edge) > options.shortest_edge)) continue;
+    const auto x = mesh.corner_positions(leaf);
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, e.point, gradient, k)));
+    const double level = std::max((E[e.point[0]] + E[e.point[1]] + E[e.point[2]]) / 3, dark);
+    if (off > options.tolerance * level) worst.push_back({off / level, leaf});
+  }
+  std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
+    return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
+  });
+  return worst;
+}
+
+}  // namespace
+
+VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
+                         const Monitor& monitor) {
+  VertexField field;
+  field.E = field.small_lights = Field(0, problem.patches.channels);
+  Gatherer gatherer(problem, B, mesh, options);
+  for (int round = 0;; ++round) {
+    field.complete = gatherer.gather(field, monitor);
+    if (!field.complete || round == kMostRounds || mesh.points().position.size() >= options.most_points) break;
+    std::vector<std::uint32_t> marked;
+    for (const Candidate& c : too_coarse(mesh, field.E, options)) {
+      if (mesh.points().position.size() + marked.size() >= options.most_points) break;
+      marked.push_back(c.leaf);
+    }
+    if (marked.empty()) break;
+    mesh.split(marked);
+  }
+  return field;
+}
+
+Field leaf_irradiance(const ElementMesh& mesh, const Field& E) {
+  constexpr double kMostBulge = 0.1;  // of the mean: more is a shadow's edge, and no curve
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  Field mean(leaves.size(), E.channels);
+  std::vector<double> value(E.size());
+  for (int c = 0; c < E.channels; ++c) {
+    for (std::size_t p = 0; p < value.size(); ++p) value[p] = E.at(p, c);
+    const std::vector<Vec3> gradient = gradients(mesh, leaves, value);
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      const auto& point = mesh[leaves[i]].point;
+      const auto x = mesh.corner_positions(leaves[i]);
+      const double corners = (value[point[0]] + value[point[1]] + value[point[2]]) / 3;
+      double off = 0;
+      for (std::size_t k = 0; k < 3; ++k) off += bulge(x, point, gradient, k) / 3;
+      mean.at(i, c) = corners + std::clamp(off, -kMostBulge * corners, kMostBulge * corners);
+    }
+  }
+  return mean;
+}
+
+}  // namespace clerestory

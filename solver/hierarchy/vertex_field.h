@@ -1,0 +1,45 @@
+#pragma once
+// Irradiance at vertices, with more of them where straight lines between them would be wrong.
+
+#include "solver/gather_pattern.h"
+#include "solver/hierarchy/element_mesh.h"
+#include "solver/model/monitor.h"
+#include "solver/problem.h"
+
+namespace clerestory {
+
+struct FieldOptions {
+  double tolerance = 0.025;  ///< an element is halved where interpolation may err by more, of the irradiance there [1]
+  double shortest_edge = 0;  ///< no edge up to this length is halved [m]
+  std::size_t most_points = 1'000'000;  ///< no halving beyond
+  GatherQuality quality{};
+  std::uint64_t seed = 1;
+};
+
+/// P x channels, by point of the mesh [W/m2].
+struct VertexField {
+  Field E;
+  Field small_lights;  ///< part of E: from luminaires without extent and suns
+  unsigned long long rays = 0;
+  bool complete = true;  ///< false: the monitor stopped it, and points from `reached` on hold nothing
+  std::size_t reached = 0;
+};
+
+/// Final gather at all points of the mesh, then halves elements, gathers the new points, and looks again.
+///
+/// What interpolation leaves out is told by how the gradient, averaged around each point, turns from one end of an edge
+/// to the other: (g_b - g_a) . (b - a) / 8 is how far the middle lies off the straight line. Shadow edges never agree,
+/// so there the shortest edge decides.
+///
+/// problem  with the patches that B belongs to; mesh: halves of theirs, or of what they are halves of.
+/// Threads: same bits for any thread count. Cost: 0.03 (standard) to 0.15 ms (fine) a point and core.
+/// Source of the estimate: Zienkiewicz & Zhu, "A simple error estimator and adaptive procedure for practical
+/// engineering analysis", 1987.
+VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
+                         const Monitor& monitor = {});
+
+/// Mean irradiance of each leaf from the field at its corners, with what the turning of the gradient says about how far
+/// the middle lies off them: exact for quadratic light, where the mean of the corners loses what light bulges [W/m2].
+Field leaf_irradiance(const ElementMesh& mesh, const Field& E);
+
+}  // namespace clerestory

@@ -1,6 +1,8 @@
 #include "solver/lights/light_sampler.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numbers>
 
 #include "solver/lights/point_lights.h"
@@ -12,129 +14,195 @@
 namespace clerestory {
 namespace {
 
-/// Half of the area of all patches glows no more than this (luminous mean).
+/// Half of the area of all patches glows no more than this (luminous mean), to the precision of float. The bits of a
+/// positive float order like its value: three passes over histograms of 11, 11 and 10 of them need no memory.
 double area_median(const PatchSet& patches, const Field& glow) {
-  std::vector<std::pair<double, double>> by_glow;  // with area
-  double half = 0;
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
-    by_glow.emplace_back(luminous_mean(glow[i]), patches.area[i]);
-    half += patches.area[i] / 2;
+  const auto bits = [&](std::size_t i) {
+    return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(luminous_mean(glow[i]), 0.0)));
+  };
+  double half = patches.total_area() / 2;
+  std::uint32_t found = 0, known = 0;
+  for (const int shift : {21, 10, 0}) {
+    std::vector<double> area(2048, 0.0);
+    for (std::size_t i = 0; i < patches.patch_count(); ++i)
+      if (const std::uint32_t b = bits(i); (b & known) == found) area[(b >> shift) & 2047] += patches.area[i];
+    std::uint32_t bin = 0, last = 0;
+    for (; bin < area.size() && half > 0; ++bin)
+      if (area[bin] > 0) {
+        last = bin;
+        if (half <= area[bin]) break;
+        half -= area[bin];
+      }
+    found |= last << shift;
+    known |= 2047u << shift;
   }
-  std::sort(by_glow.begin(), by_glow.end());
-  for (const auto& [value, area] : by_glow)
-    if ((half -= area) <= 0) return value;
-  return 0;
+  return std::bit_cast<float>(found);
 }
+
+LightBounds bounds_of_patch(const PatchSet& patches, PatchId q, double flux) {
+  const auto c = patches.corner_positions(q);
+  return {{std::min({c[0].x, c[1].x, c[2].x}), std::min({c[0].y, c[1].y, c[2].y}), std::min({c[0].z, c[1].z, c[2].z})},
+          {std::max({c[0].x, c[1].x, c[2].x}), std::max({c[0].y, c[1].y, c[2].y}), std::max({c[0].z, c[1].z, c[2].z})},
+          patches.normal[q],
+          0,
+          flux};
+}
+
+/// Circular cross-section of the scene: what a sun lights at most [m2].
+double cross_section(const RayScene& rays) { return std::numbers::pi / 4 * rays.diameter() * rays.diameter(); }
 
 }  // namespace
 
 LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_(problem), glow_(glow) {
   const PatchSet& patches = problem.patches;
-  const std::size_t n = patches.patch_count();
-  double total = 0;
-  const auto add = [&](Kind kind, std::size_t index, double power) {
-    if (!(power > 0)) return;
-    lights_.push_back({kind, static_cast<std::uint32_t>(index), 0, 0, power, 0});
-    total += power;
-  };
-  // Emitters first, so that their part of the cumulative table stands alone.
-  const double bright = kBrighter * area_median(patches, glow);
-  for (std::size_t i = 0; i < n; ++i)
-    if (const double B = luminous_mean(glow[i]); B > bright) add(Kind::patch, i, B * patches.area[i]);
-  has_emitters_ = !lights_.empty();
-  const double emitters_total = total;
-  for (std::size_t i = 0; i < problem.lights.points.size(); ++i)
-    add(Kind::point, i, luminous_mean(power(problem.lights.points[i])));
-  for (std::size_t i = 0; i < problem.lights.spots.size(); ++i)
-    add(Kind::spot, i, luminous_mean(power(problem.lights.spots[i])));
-  const double cross_section = std::numbers::pi / 4 * problem.rays.diameter() * problem.rays.diameter();
-  for (std::size_t i = 0; i < problem.lights.suns.size(); ++i)
-    add(Kind::sun, i, luminous_mean(problem.lights.suns[i].normal_irradiance) * cross_section);
+  const Lights& lights = problem.lights;
+  const double extent = problem.rays.diameter();
 
-  double sum = 0;
-  for (Light& light : lights_) {
-    const double light_power = light.share;
-    sum += light_power;
-    light.share = light_power / total;
-    light.cumulative = sum / total;
-    light.share_emitters = emitters_total > 0 ? light_power / emitters_total : 0;
-    light.cumulative_emitters = emitters_total > 0 ? std::min(sum / emitters_total, 1.0) : 0;
+  std::vector<LightBounds> bounds;
+  const double bright = kBrighter * area_median(patches, glow);
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    const double B = luminous_mean(glow[i]), flux = B * patches.area[i];
+    if (!(B > bright) || !(flux > 0)) continue;
+    if (bright_.empty()) number_of_patch_.assign(patches.patch_count(), LightTree::kNone);
+    number_of_patch_[i] = static_cast<std::uint32_t>(bright_.size());
+    bright_.push_back(static_cast<std::uint32_t>(i));
+    bounds.push_back(bounds_of_patch(patches, PatchId{i}, flux));
+    patches_power_ += flux;
   }
-  if (has_emitters_) {
-    emitters_share_ = emitters_total / total;
-    explicit_.assign(n, false);
-    share_of_patch_.assign(n, 0.0);
-    for (const Light& light : lights_)
-      if (light.kind == Kind::patch) {
-        explicit_[light.index] = true;
-        share_of_patch_[light.index] = light.share;
-      }
+  patches_ = LightTree(bounds, Falloff::cosine, extent);
+
+  bounds.clear();
+  for (const PointLuminaire& lamp : lights.points) {
+    const double peak = luminous_mean(intensity(lamp, {}));
+    bounds.push_back({lamp.position, lamp.position, {}, std::numbers::pi, peak});
+    lamps_power_ += luminous_mean(power(lamp));
   }
+  for (const SpotLuminaire& lamp : lights.spots) {
+    const double peak = luminous_mean(lamp.intensity);
+    bounds.push_back({lamp.position, lamp.position, lamp.direction, lamp.outer_angle, peak});
+    lamps_power_ += luminous_mean(power(lamp));
+  }
+  if (lamps_power_ > 0) lamps_ = LightTree(bounds, Falloff::none, extent);
+  for (const Sun& sun : lights.suns) suns_power_ += luminous_mean(sun.normal_irradiance) * cross_section(problem.rays);
+}
+
+LightSampler::Shares LightSampler::shares(const Vec3& p, const Vec3& n) const {
+  if (lamps_power_ == 0 && suns_power_ == 0) return {1, 0, 0};
+  Shares s;
+  if (patches_.reaches(p, n)) s.patches = patches_power_;
+  if (lamps_power_ > 0 && lamps_.reaches(p, n)) s.lamps = lamps_power_;
+  for (const Sun& sun : problem_.lights.suns)
+    if (dot(n, sun.direction) > -0.01) s.suns = suns_power_;  // the disc is half a degree wide
+  const double sum = s.patches + s.lamps + s.suns;
+  if (!(sum > 0)) return {};
+  // Half of the choice is even: power says little about a lamp indoors beside a sun that does not get in.
+  const int groups = (s.patches > 0) + (s.lamps > 0) + (s.suns > 0);
+  for (double* share : {&s.patches, &s.lamps, &s.suns})
+    if (*share > 0) *share = (*share / sum + 1.0 / groups) / 2;
+  return s;
 }
 
 LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, double u, double v,
                                  bool emitters_only) const {
-  const auto cumulative = emitters_only ? &Light::cumulative_emitters : &Light::cumulative;
-  auto light = std::upper_bound(lights_.begin(), lights_.end(), pick,
-                                [&](double x, const Light& l) { return x < l.*cumulative; });
-  if (light == lights_.end()) --light;
-  const double share = emitters_only ? light->share_emitters : light->share;
-  const double lift = problem_.rays.lift();
-  switch (light->kind) {
-    case Kind::patch: {
-      const PatchId q{light->index};
-      const Vec3 normal = problem_.patches.normal[q];
-      const Vec3 point = point_on_triangle(problem_.patches.corner_positions(q), u, v);
-      const double kernel = point_kernel(p, n, point, normal);
-      if (kernel == 0) return {};
-      const Vec3 d = point - p;
-      const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2);
-      return {point + normal * lift, glow_[q] * (kernel * problem_.patches.area[q] / share),
-              share * r2 / (cos_q * problem_.patches.area[q]), q};
-    }
-    case Kind::point: {
-      const PointLuminaire& lamp = problem_.lights.points[light->index];
-      return {lamp.position, open_irradiance(lamp, p, n) / share, 0, {}};
-    }
-    case Kind::spot: {
-      const SpotLuminaire& lamp = problem_.lights.spots[light->index];
-      return {lamp.position, open_irradiance(lamp, p, n) / share, 0, {}};
-    }
-    case Kind::sun: {
-      const Sun& sun = problem_.lights.suns[light->index];
-      const Vec3 d = direction_to_sun(sun, u, v);
-      const double cos_n = dot(n, d);
-      if (!(cos_n > 0)) return {};
-      return {p + d * (4 * problem_.rays.diameter()), sun.normal_irradiance * (cos_n / share), 0, {}};
-    }
-  }
-  return {};
+  if (emitters_only) return on_patch(p, n, pick, u, v, 1);
+  const Shares s = shares(p, n);
+  const double lamps_end = s.patches + s.lamps;
+  if (pick < s.patches) return on_patch(p, n, pick / s.patches, u, v, s.patches);
+  if (s.lamps > 0 && (pick < lamps_end || !(s.suns > 0))) return on_lamp(p, n, (pick - s.patches) / s.lamps, s.lamps);
+  if (s.suns > 0) return on_sun(p, n, (pick - lamps_end) / s.suns, u, v, s.suns);
+  return s.patches > 0 ? on_patch(p, n, pick, u, v, s.patches) : LightSample{};
 }
 
-double LightSampler::density(PatchId q, const Vec3& /*p*/, const Vec3& /*n*/, double distance, double cos_q,
+LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
+  const LightTree::Choice choice = patches_.choose(p, n, pick);
+  if (!(choice.probability > 0)) return {};
+  const double probability = share * choice.probability;
+  const PatchId q{bright_[choice.light]};
+  const Vec3 normal = problem_.patches.normal[q];
+  const Vec3 point = point_on_triangle(problem_.patches.corner_positions(q), u, v);
+  const double kernel = point_kernel(p, n, point, normal);
+  if (kernel == 0) return {};
+  const Vec3 d = point - p;
+  const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
+  return {point + normal * problem_.rays.lift(), glow_[q] * (kernel * area / probability),
+          probability * r2 / (cos_q * area), q};
+}
+
+LightSample LightSampler::on_lamp(const Vec3& p, const Vec3& n, double pick, double share) const {
+  const LightTree::Choice choice = lamps_.choose(p, n, pick);
+  if (!(choice.probability > 0)) return {};
+  const auto& [points, spots, sky, suns] = problem_.lights;
+  const double probability = share * choice.probability;
+  if (choice.light < points.size()) {
+    const PointLuminaire& lamp = points[choice.light];
+    return {lamp.position, open_irradiance(lamp, p, n) / probability, 0, {}};
+  }
+  const SpotLuminaire& lamp = spots[choice.light - points.size()];
+  return {lamp.position, open_irradiance(lamp, p, n) / probability, 0, {}};
+}
+
+LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
+  double left = pick * suns_power_ / cross_section(problem_.rays);
+  const Sun* sun = nullptr;
+  double power = 0;
+  for (const Sun& candidate : problem_.lights.suns) {
+    const double candidate_power = luminous_mean(candidate.normal_irradiance);
+    if (!(candidate_power > 0)) continue;
+    if (sun) left -= power;
+    sun = &candidate, power = candidate_power;
+    if (left < power) break;
+  }
+  const Vec3 d = direction_to_sun(*sun, u, v);
+  const double cos_n = dot(n, d), probability = share * power * cross_section(problem_.rays) / suns_power_;
+  if (!(cos_n > 0)) return {};
+  return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}};
+}
+
+double LightSampler::density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
                              bool emitters_only) const {
   if (!(cos_q > 0)) return 0;
-  const double share = share_of_patch_[q] / (emitters_only ? emitters_share_ : 1.0);
-  return share * distance * distance / (cos_q * problem_.patches.area[q]);
+  const double share = emitters_only ? 1.0 : shares(p, n).patches;
+  return share * patches_.probability(number_of_patch_[q], p, n) * distance * distance /
+         (cos_q * problem_.patches.area[q]);
 }
 
 Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const {
+  const RayScene& rays = problem_.rays;
   Spectrum E(0.0);
-  const auto add_lamp = [&](const auto& lamp) {
-    const Spectrum open = open_irradiance(lamp, p, n);
-    if (!open.is_black()) E += open * problem_.rays.transmittance(p, lamp.position);
+  SegmentPacket segments;
+  std::array<Vec3, 16> end;
+  std::array<Spectrum, 16> open;
+  unsigned queued = 0;
+  const auto flush = [&] {
+    for (unsigned seen = queued ? rays.visible16(segments, static_cast<std::uint16_t>((1u << queued) - 1)) : 0; seen;
+         seen &= seen - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(seen));
+      E += open[k] * rays.glass_transmittance(p, end[k]);
+    }
+    queued = 0;
   };
-  for (const auto& lamp : problem_.lights.points) add_lamp(lamp);
-  for (const auto& lamp : problem_.lights.spots) add_lamp(lamp);
-  for (const Sun& sun : problem_.lights.suns) {
-    Spectrum sum(0.0);
+  const auto look = [&](const Vec3& to, const Spectrum& irradiance) {
+    if (irradiance.is_black()) return;
+    segments.set(static_cast<int>(queued), p, to);
+    end[queued] = to, open[queued] = irradiance;
+    if (++queued == 16) flush();
+  };
+  // In the tree's order lamps that share a packet are neighbours.
+  const auto& [points, spots, sky, suns] = problem_.lights;
+  for (const std::uint32_t lamp : lamps_.order()) {
+    if (lamp < points.size())
+      look(points[lamp].position, open_irradiance(points[lamp], p, n));
+    else
+      look(spots[lamp - points.size()].position, open_irradiance(spots[lamp - points.size()], p, n));
+  }
+  flush();
+  for (const Sun& sun : suns) {
     for (int k = 0; k < sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
-      const double cos_n = dot(n, d);
-      if (cos_n > 0) sum += problem_.rays.transmittance(p, p + d * (4 * problem_.rays.diameter())) * cos_n;
+      look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays));
     }
-    E += sun.normal_irradiance * sum / sun_rays;
+    flush();
   }
   return E;
 }

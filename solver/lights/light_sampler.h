@@ -1,8 +1,9 @@
 #pragma once
-// All lights that are worth a shadow ray, chosen in proportion to their flux.
+// All lights that are worth a shadow ray, chosen by what they can give where they are asked for.
 
 #include <vector>
 
+#include "solver/lights/light_tree.h"
 #include "solver/lights/sky.h"
 #include "solver/problem.h"
 
@@ -27,13 +28,13 @@ class LightSampler {
   ///       B for a gather, where the sun's patch on the floor is as much of a lamp as the lamp. Outlives the sampler.
   LightSampler(const Problem& problem, const Field& glow);
 
-  bool empty() const { return lights_.empty(); }
-  bool has_emitters() const { return has_emitters_; }
+  bool empty() const { return bright_.empty() && lamps_.empty() && suns_power_ == 0; }
+  bool has_emitters() const { return !bright_.empty(); }
   const Field& glow() const { return glow_; }
-  bool is_explicit(PatchId p) const { return has_emitters_ && explicit_[p]; }
+  bool is_explicit(PatchId p) const { return has_emitters() && number_of_patch_[p] != LightTree::kNone; }
 
-  /// Light `pick` in [0, 1) chosen by flux, and the point (u, v) of it, for receiver point p with normal n.
-  /// Glowing patches only when `emitters_only`.
+  /// Light chosen by `pick` in [0, 1), and the point (u, v) of it, for receiver point p with normal n. Glowing patches
+  /// only when `emitters_only`; otherwise patches, luminaires and suns share the choice by their power first.
   LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool emitters_only) const;
 
   /// Density per solid angle with which sample() would choose, at p with normal n, the direction that ends on the
@@ -44,20 +45,20 @@ class LightSampler {
   Spectrum small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
 
  private:
-  enum class Kind : std::uint8_t { patch, point, spot, sun };
-  struct Light {
-    Kind kind;
-    std::uint32_t index;
-    double cumulative, cumulative_emitters;  ///< flux of the lights up to and with this one, normalised to 1
-    double share, share_emitters;            ///< probability of the choice
+  struct Shares {
+    double patches = 0, lamps = 0, suns = 0;  ///< probabilities, sum 1
   };
+  Shares shares(const Vec3& p, const Vec3& n) const;
+  LightSample on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+  LightSample on_lamp(const Vec3& p, const Vec3& n, double pick, double share) const;
+  LightSample on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+
   const Problem& problem_;
   const Field& glow_;
-  std::vector<Light> lights_;
-  std::vector<double> share_of_patch_;  ///< N, in proportion of all lights; empty without emitters
-  std::vector<bool> explicit_;
-  double emitters_share_ = 0;
-  bool has_emitters_ = false;
+  LightTree patches_, lamps_;                                    ///< of bright_; of points, and spots after them
+  std::vector<std::uint32_t> bright_;                            ///< patches sampled like lights
+  std::vector<std::uint32_t> number_of_patch_;                   ///< N, number in bright_ or kNone; empty without any
+  double patches_power_ = 0, lamps_power_ = 0, suns_power_ = 0;  ///< [W]
 };
 
 }  // namespace clerestory

@@ -14,7 +14,46 @@
 namespace clerestory {
 namespace {
 
+constexpr std::size_t kBlock = 1 << 14;   ///< patches between two looks at what is known by then
+constexpr std::size_t kLampSamples = 64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
+
 enum StreamKind : std::uint64_t { kSideRays = 0x31, kLampRays = 0x32, kLampSearch = 0x33 };
+
+/// Patches that see each other, and what is known of each such space.
+class Spaces {
+ public:
+  explicit Spaces(const PatchSet& patches) : sets_(patches.patch_count()), of_(patches.patch_count()) {
+    for (std::size_t i = 0; i < of_.size(); ++i) of_[i].only_material = patches.material(PatchId{i});
+  }
+  void see_each_other(const PatchSet& patches, std::size_t p, std::size_t q) {
+    Space& a = of_[sets_.find(p)];
+    a.glows |= !patches.M[p].is_black() || !patches.M[q].is_black();
+    Space& b = of_[sets_.find(q)];
+    sets_.join(p, q);
+    Space& joined = of_[sets_.find(p)];
+    const bool one_material = a.only_material.value == b.only_material.value;
+    joined = {a.lit || b.lit, a.glows || b.glows, one_material ? a.only_material : MaterialId{}};
+  }
+  void light(std::size_t i) { of_[sets_.find(i)].lit = true; }
+
+  bool is_lit(std::size_t i) const { return of_[sets_.name(i)].lit; }
+  bool glows(std::size_t i) const { return of_[sets_.name(i)].glows; }
+  /// Invalid when there are several.
+  MaterialId only_material(std::size_t i) const { return of_[sets_.name(i)].only_material; }
+  /// Takes part, whatever else may be found: nothing that sees it needs to look around for itself.
+  bool is_settled(std::size_t i) const {
+    const Space& s = of_[sets_.name(i)];
+    return s.lit || (s.glows && !s.only_material.valid());
+  }
+
+ private:
+  struct Space {
+    bool lit = false, glows = false;
+    MaterialId only_material;
+  };
+  DisjointSets sets_;
+  std::vector<Space> of_;
+};
 
 /// Patches seen by rays of patch i.
 struct Seen {
@@ -23,7 +62,8 @@ struct Seen {
   bool sun = false;
 };
 
-Seen look_around(const Problem& problem, std::size_t i, int ray_count, std::uint64_t seed) {
+/// Ends with the first sight of a space that takes part: then so does patch i.
+Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, int ray_count, std::uint64_t seed) {
   const PatchSet& patches = problem.patches;
   const Frame frame(patches.normal[i]);
   auto corners = patches.corner_positions(PatchId{i});
@@ -38,7 +78,9 @@ Seen look_around(const Problem& problem, std::size_t i, int ray_count, std::uint
     const Hit hit = problem.rays.first_hit(
         patches, {point_on_triangle(corners, u[2], u[3]) + frame.n * lift, cosine_direction(frame, u[0], u[1])});
     seen.outside = seen.outside || hit.escaped();
-    if (hit.patch.valid()) seen.patches.push_back(hit.patch);
+    if (!hit.patch.valid()) continue;
+    seen.patches.push_back(hit.patch);
+    if (spaces.is_settled(hit.patch)) return seen;
   }
   for (const Sun& sun : problem.lights.suns) {
     for (int k = 0; k < 16 && !seen.sun; ++k) {
@@ -58,12 +100,13 @@ struct Found {
   std::vector<PatchId> glowing;  ///< patches that light it
 };
 
-Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::size_t i, std::uint64_t seed) {
+Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
+                     std::uint64_t seed) {
   const auto corners = problem.patches.corner_positions(PatchId{i});
   const Vec3 n = problem.patches.normal[i];
   const double lift = problem.rays.lift();
   const std::uint64_t key = stream_key(seed, kLampSearch, i);
-  std::array<Vec3, 64> points;
+  std::array<Vec3, kLampSamples> points;
   for (std::uint32_t k = 0; k < points.size(); ++k) {
     const auto u = sobol4(k, key);
     points[k] = point_on_triangle(corners, u[0], u[1]) + n * lift;
@@ -81,21 +124,37 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
   };
   for (const auto& lamp : problem.lights.points) look_at(lamp);
   for (const auto& lamp : problem.lights.spots) look_at(lamp);
-  for (std::uint32_t k = 0; k < points.size() && emitters.has_emitters(); ++k) {
+  for (std::uint32_t k = 0; k < samples && emitters.has_emitters(); ++k) {
     const auto u = sobol4(k, key);
-    const LightSample s = emitters.sample(points[k], n, (k + u[2]) / points.size(), u[3], u[0], true);
+    const LightSample s = emitters.sample(points[k], n, (k + u[2]) / static_cast<double>(samples), u[3], u[0], true);
     if (s.patch.valid() && !problem.rays.transmittance(points[k], s.end).is_black()) found.glowing.push_back(s.patch);
   }
   return found;
 }
 
 template <class Lamp>
-void mark_lit_by(const Problem& problem, const Lamp& lamp, std::size_t number, std::uint64_t seed,
-                 std::vector<bool>& lit) {
+void light_by(const Problem& problem, const Lamp& lamp, std::size_t number, std::uint64_t seed, Spaces& spaces) {
   for (std::uint32_t k = 0; k < 4096; ++k) {
     const auto u = sobol4(k, stream_key(seed, kLampRays, number));
     const Hit hit = problem.rays.first_hit(problem.patches, {lamp.position, sphere_direction(u[0], u[1])});
-    if (hit.patch.valid()) lit[hit.patch] = true;
+    if (hit.patch.valid()) spaces.light(hit.patch);
+  }
+}
+
+/// Lets the given patches look for luminaires and for the patches that glow.
+void search_lamps(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
+                  std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
+  const LightSampler emitters(problem, glow);
+  for (std::size_t begin = 0; begin < receivers.size() && !monitor.should_stop(); begin += kBlock) {
+    std::vector<Found> found(std::min(kBlock, receivers.size() - begin));
+    parallel_for(found.size(), 32, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k)
+        found[k] = look_for_lamps(problem, emitters, receivers[begin + k], samples, seed);
+    });
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      if (found[k].lit) spaces.light(receivers[begin + k]);
+      for (const PatchId q : found[k].glowing) spaces.see_each_other(problem.patches, receivers[begin + k], q);
+    }
   }
 }
 
@@ -107,76 +166,68 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   // Enough rays in all that a space of few large patches is not taken apart by chance.
   const int ray_count = 16 * static_cast<int>(std::clamp<std::size_t>((1 << 15) / std::max<std::size_t>(n, 1), 1, 16));
 
-  DisjointSets spaces(n);
-  std::vector<bool> lit(n, false);
-  std::vector<char> sees_a_surface(n, 0);
-  constexpr std::size_t kBlock = 1 << 14;
-  for (std::size_t begin = 0; begin < n; begin += kBlock) {
+  Spaces spaces(patches);
+  std::size_t number = 0;
+  for (const auto& lamp : problem.lights.points) light_by(problem, lamp, number++, seed, spaces);
+  for (const auto& lamp : problem.lights.spots) light_by(problem, lamp, number++, seed, spaces);
+
+  // Emitters first: most patches of a large scene are then met by a ray before it is their turn, and send none, or meet
+  // a space that takes part with their first ray.
+  std::vector<std::uint32_t> waiting;
+  waiting.reserve(n);
+  for (const bool emitting : {true, false})
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (patches.M[i].is_black() != emitting) waiting.push_back(i);
+  std::vector<std::uint32_t> looking;
+  for (std::size_t next = 0; next < n;) {
     if (monitor.should_stop()) {  // what was not looked at takes part
-      for (std::size_t i = begin; i < n; ++i) lit[i] = true;
+      for (; next < n; ++next) spaces.light(waiting[next]);
       break;
     }
-    std::vector<Seen> seen(std::min(kBlock, n - begin));
+    looking.clear();
+    for (; next < n && looking.size() < kBlock; ++next)
+      if (!spaces.is_settled(waiting[next])) looking.push_back(waiting[next]);
+    std::vector<Seen> seen(looking.size());
     parallel_for(seen.size(), 32, [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = from; i < to; ++i) seen[i] = look_around(problem, begin + i, ray_count, seed);
+      for (std::size_t k = from; k < to; ++k) seen[k] = look_around(problem, spaces, looking[k], ray_count, seed);
     });
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      for (const PatchId q : seen[i].patches) {
-        spaces.join(begin + i, q);
-        sees_a_surface[begin + i] = sees_a_surface[q] = 1;
-      }
-      if (seen[i].sun || (seen[i].outside && problem.lights.sky)) lit[begin + i] = true;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      for (const PatchId q : seen[k].patches) spaces.see_each_other(patches, looking[k], q);
+      if (seen[k].sun || (seen[k].outside && problem.lights.sky)) spaces.light(looking[k]);
     }
   }
-  std::size_t number = 0;
-  for (const auto& lamp : problem.lights.points) mark_lit_by(problem, lamp, number++, seed, lit);
-  for (const auto& lamp : problem.lights.spots) mark_lit_by(problem, lamp, number++, seed, lit);
+  waiting = {};
 
   // In the open a patch may see nothing but lamps, which rays seldom meet.
-  std::vector<char> space_lit(n, 0);
-  for (std::size_t i = 0; i < n; ++i)
-    if (lit[i]) space_lit[spaces.find(i)] = 1;
-  std::vector<std::uint32_t> doubtful;
-  for (std::size_t i = 0; i < n; ++i)
-    if (!space_lit[spaces.find(i)]) doubtful.push_back(static_cast<std::uint32_t>(i));
-  const LightSampler emitters(problem, patches.M);
-  std::vector<Found> found(doubtful.size());
-  parallel_for(doubtful.size(), 32, [&](std::size_t from, std::size_t to) {
-    for (std::size_t k = from; k < to && !monitor.should_stop(); ++k)
-      found[k] = look_for_lamps(problem, emitters, doubtful[k], seed);
-  });
-  for (std::size_t k = 0; k < doubtful.size(); ++k) {
-    if (found[k].lit) lit[doubtful[k]] = true;
-    for (const PatchId q : found[k].glowing) {
-      spaces.join(doubtful[k], q);
-      sees_a_surface[doubtful[k]] = sees_a_surface[q] = 1;
-    }
+  std::vector<std::uint32_t> in_doubt, in_glow;
+  Field lonely(n, patches.channels);  // emitters that have not met what they light
+  bool any_lonely = false;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (spaces.is_lit(i)) continue;
+    (spaces.is_settled(i) ? in_glow : in_doubt).push_back(i);
+    if (spaces.is_settled(i) || patches.M[i].is_black()) continue;
+    lonely.set(i, patches.M[i]);
+    any_lonely = true;
+  }
+  search_lamps(problem, patches.M, in_doubt, kLampSamples, seed, monitor, spaces);
+  if (any_lonely) {
+    // Seldom: the inside of a lamp, which no one finds, or a lamp in the open. So the effort has a bound.
+    const std::size_t samples =
+        std::clamp<std::size_t>((1 << 22) / std::max<std::size_t>(in_glow.size(), 1), 1, kLampSamples);
+    search_lamps(problem, lonely, in_glow, samples, seed, monitor, spaces);
   }
 
-  struct Space {
-    bool lit = false, glows = false, visited = false;
-    MaterialId only_material;  ///< invalid when there are several
-  };
-  std::vector<Space> space(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    Space& s = space[spaces.find(i)];
-    const MaterialId material = patches.material(PatchId{i});
-    s.lit = s.lit || lit[i];
-    s.glows = s.glows || (sees_a_surface[i] && !patches.M[i].is_black());
-    s.only_material = !s.visited || s.only_material.value == material.value ? material : MaterialId{};
-    s.visited = true;
-  }
   std::vector<char> lights_others(patches.materials.size(), 0);
   for (std::size_t i = 0; i < n; ++i)
-    if (!patches.M[i].is_black() && !space[spaces.find(i)].only_material.valid())
-      lights_others[patches.material(PatchId{i})] = 1;
+    if (!patches.M[i].is_black() && !spaces.only_material(i).valid()) lights_others[patches.material(PatchId{i})] = 1;
 
   LitSides result;
   result.wanted.assign(2 * patches.triangle_count(), false);
   for (std::size_t i = 0; i < n; ++i) {
-    const Space& s = space[spaces.find(i)];
-    const bool inside_lamp = !s.lit && s.glows && s.only_material.valid() && lights_others[s.only_material];
-    if (s.lit || (s.glows && !inside_lamp))
+    const bool lit = spaces.is_lit(i), glows = spaces.glows(i);
+    const MaterialId only = spaces.only_material(i);
+    const bool inside_lamp = !lit && glows && only.valid() && lights_others[only];
+    if (lit || (glows && !inside_lamp))
       result.wanted[2 * patches.triangle[i] + patches.side[i]] = true;
     else
       ++(inside_lamp ? result.lamp_interiors : result.dark_sides);

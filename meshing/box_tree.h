@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "solver/model/vec.h"
@@ -51,12 +52,23 @@ struct Box {
   }
 };
 
-/// Static tree, built in O(n log n). Visits in a fixed order, so what is found does not depend on threads.
+/// Boxes by number, kept.
+struct StoredBoxes {
+  std::vector<Box> boxes;
+  const Box& operator()(std::uint32_t i) const { return boxes[i]; }
+};
+
+/// Static tree over boxes that box_of(i), i < n, gives: of millions of points or faces no box need be stored.
+/// Boxes are put in the order of their centres' Morton codes, then halved by number. Visits in a fixed order, so what
+/// is found does not depend on threads. Cost: O(n log n), 16 bytes a box.
+template <class BoxOf>
 class BoxTree {
  public:
-  explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    if (!boxes_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+  BoxTree(std::size_t n, BoxOf box_of) : box_of_(std::move(box_of)) {
+    if (n == 0) return;
+    sort(n);
+    nodes_.reserve(2 * ((n + kLeaf / 2) / (kLeaf / 2)));
+    build(0, static_cast<std::uint32_t>(n));
   }
 
   /// Calls found(index) for every box for which touches(box) holds; touches must hold for a box that contains such a
@@ -68,14 +80,15 @@ class BoxTree {
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      if (!touches(node.box)) continue;
+      const std::uint32_t index = stack[--depth];
+      const Node& node = nodes_[index];
+      if (!touches(node.box())) continue;
       if (node.right == 0) {
         for (std::uint32_t k = node.begin; k < node.end; ++k)
-          if (touches(boxes_[order_[k]])) found(order_[k]);
+          if (touches(box_of_(order_[k]))) found(order_[k]);
       } else {
         stack[depth++] = node.right;
-        stack[depth++] = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
+        stack[depth++] = index + 1;
       }
     }
   }
@@ -85,40 +98,71 @@ class BoxTree {
   }
 
  private:
+  static constexpr std::uint32_t kLeaf = 4;  ///< most boxes of a leaf
+
   struct Node {
-    Box box;
-    std::uint32_t begin = 0, end = 0;
-    std::uint32_t right = 0;  ///< 0: a leaf; the left child is the next node
+    std::array<float, 3> lower, upper;  ///< rounded outwards
+    std::uint32_t begin, end;
+    std::uint32_t right;  ///< 0: a leaf; the left child is the next node
+    Box box() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
   };
 
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end) {
-    const auto index = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Box box, centres;
-    for (std::uint32_t k = begin; k < end; ++k) {
-      box.add(boxes_[order_[k]]);
-      centres.add(boxes_[order_[k]].lower + boxes_[order_[k]].upper);
-    }
-    nodes_[index].box = box;
-    nodes_[index].begin = begin;
-    nodes_[index].end = end;
-    if (end - begin <= 4) return index;
-    const Vec3 d = centres.upper - centres.lower;
-    const int axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
-    const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                     [&](std::uint32_t i, std::uint32_t j) {
-                       const double ci = boxes_[i].lower[axis] + boxes_[i].upper[axis];
-                       const double cj = boxes_[j].lower[axis] + boxes_[j].upper[axis];
-                       return ci != cj ? ci < cj : i < j;
-                     });
-    build(begin, middle);
-    const std::uint32_t right = build(middle, end);
-    nodes_[index].right = right;
-    return index;
+  static float rounded(double x, float towards) {
+    const auto f = static_cast<float>(x);
+    return (towards < 0 ? f > x : f < x) ? std::nextafter(f, towards) : f;
+  }
+  /// The low 21 bits of x, each followed by two zeros.
+  static std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
   }
 
-  std::vector<Box> boxes_;
+  void sort(std::size_t n) {
+    Box centres;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const Box& b = box_of_(i);
+      centres.add(b.lower + b.upper);
+    }
+    const Vec3 size = centres.upper - centres.lower;
+    const double widest = std::max({size.x, size.y, size.z});
+    const double scale = widest > 0 ? 0x1fffff / widest : 0;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const Box& b = box_of_(i);
+      const Vec3 d = (b.lower + b.upper - centres.lower) * scale;
+      keys[i] = {spread(static_cast<std::uint64_t>(d.x)) | spread(static_cast<std::uint64_t>(d.y)) << 1 |
+                     spread(static_cast<std::uint64_t>(d.z)) << 2,
+                 i};
+    }
+    std::sort(keys.begin(), keys.end());
+    order_.resize(n);
+    for (std::size_t k = 0; k < n; ++k) order_[k] = keys[k].second;
+  }
+
+  Box build(std::uint32_t begin, std::uint32_t end) {
+    const std::size_t index = nodes_.size();
+    nodes_.push_back({{}, {}, begin, end, 0});
+    Box box;
+    if (end - begin <= kLeaf) {
+      for (std::uint32_t k = begin; k < end; ++k) box.add(box_of_(order_[k]));
+    } else {
+      const std::uint32_t middle = begin + (end - begin) / 2;
+      box.add(build(begin, middle));
+      nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
+      box.add(build(middle, end));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      nodes_[index].lower[k] = rounded(box.lower[axis], -std::numeric_limits<float>::infinity());
+      nodes_[index].upper[k] = rounded(box.upper[axis], std::numeric_limits<float>::infinity());
+    }
+    return box;
+  }
+
+  BoxOf box_of_;
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
 };

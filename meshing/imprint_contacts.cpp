@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "meshing/box_tree.h"
 #include "meshing/point_index.h"
@@ -92,19 +94,19 @@ std::optional<Contact> contact(const FaceComplex& complex, std::uint32_t face_a,
 std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector<PlaneGroup>& groups,
                                    const std::vector<std::uint32_t>& group_of) {
   const std::size_t count = complex.faces.size();
-  std::vector<Box> boxes(count);
-  for (std::size_t f = 0; f < count; ++f) {
-    for (const std::uint32_t v : complex.faces[f].corner) boxes[f].add(complex.vertices[v]);
-    boxes[f] = boxes[f].grown(complex.allowed.contact / 2);
-  }
-  const BoxTree tree(boxes);
+  const auto box_of = [&](std::size_t f) {
+    Box box;
+    for (const std::uint32_t v : complex.faces[f].corner) box.add(complex.vertices[v]);
+    return box.grown(complex.allowed.contact / 2);
+  };
+  const BoxTree tree(count, box_of);
   constexpr std::size_t kGrain = 256;
   std::vector<std::vector<Contact>> found((count + kGrain - 1) / kGrain);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk)
       for (std::size_t f = chunk * kGrain; f < std::min(count, (chunk + 1) * kGrain); ++f) {
         const auto& cf = complex.faces[f].corner;
-        tree.visit(boxes[f], [&](std::uint32_t g) {
+        tree.visit(box_of(f), [&](std::uint32_t g) {
           if (g <= f || group_of[g] == group_of[f]) return;
           const auto& cg = complex.faces[g].corner;
           int shared = 0;
@@ -131,74 +133,144 @@ void keep_unique(std::vector<Line>& lines) {
 
 std::vector<Ends> distinct_ends(const std::vector<Line>& lines) {
   std::vector<Ends> ends;
+  ends.reserve(lines.size());
   for (const Line& l : lines) ends.push_back({l.a, l.b});
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   return ends;
 }
 
-/// Splits lines at vertices that lie on them and at the `forced` ones. Returns how many distinct lines were split at a
-/// vertex below `first_new`.
-std::size_t split(const FaceComplex& complex, Drawing& drawing, const std::map<Ends, Stops>& forced,
-                  std::uint32_t first_new) {
-  std::vector<Line>& lines = drawing.lines;
-  const std::vector<Ends> ends = distinct_ends(lines);
-  std::vector<std::uint32_t> used;
-  for (const Ends& e : ends) used.insert(used.end(), e.begin(), e.end());
-  for (const auto& [group, v] : drawing.points) used.push_back(v);
-  for (const auto& [e, stops] : forced) used.insert(used.end(), stops.begin(), stops.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<Box> boxes(used.size());
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    boxes[k].add(complex.vertices[used[k]]);
-    boxes[k] = boxes[k].grown(complex.allowed.contact);
-  }
-  const BoxTree tree(std::move(boxes));
-
-  std::vector<Stops> stops(ends.size());
-  parallel_for(ends.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Vec3 a = complex.vertices[ends[k][0]], b = complex.vertices[ends[k][1]];
-      const Vec3 d = b - a;
-      const double dd = dot(d, d), tolerance = complex.line_tolerance(ends[k][0], ends[k][1]);
-      std::vector<std::pair<double, std::uint32_t>> on;
-      const auto place = [&](std::uint32_t v) { return dot(complex.vertices[v] - a, d) / dd; };
-      tree.visit_if([&](const Box& box) { return box.touches_segment(a, b); },
-                    [&](std::uint32_t i) {
-                      const std::uint32_t v = used[i];
-                      if (v == ends[k][0] || v == ends[k][1]) return;
-                      const double t = place(v);
-                      if (t <= 0 || t >= 1) return;
-                      if (length(complex.vertices[v] - a - d * t) > std::min(tolerance, complex.tolerance[v])) return;
-                      on.push_back({t, v});
-                    });
-      if (const auto it = forced.find(ends[k]); it != forced.end())
-        for (const std::uint32_t v : it->second)
-          if (const double t = place(v); t > 0 && t < 1) on.push_back({t, v});
-      std::sort(on.begin(), on.end());
-      on.erase(std::unique(on.begin(), on.end()), on.end());
-      for (const auto& [t, v] : on) stops[k].push_back(v);
+/// Vertices that came into use together, by place.
+struct Layer {
+  Layer(const FaceComplex& complex, std::vector<std::uint32_t> vertices)
+      : vertex(std::move(vertices)), tree(vertex.size(), {&complex, &vertex}) {}
+  struct BoxOfVertex {
+    const FaceComplex* complex;
+    const std::vector<std::uint32_t>* vertex;
+    Box operator()(std::uint32_t i) const {
+      Box box;
+      box.add(complex->vertices[(*vertex)[i]]);
+      return box.grown(complex->allowed.contact);
     }
-  });
+  };
+  std::vector<std::uint32_t> vertex;
+  BoxTree<BoxOfVertex> tree;
+};
 
-  std::size_t at_old = 0;
-  for (const Stops& s : stops)
-    at_old += static_cast<std::size_t>(std::count_if(s.begin(), s.end(), [&](auto v) { return v < first_new; }));
-  std::vector<Line> pieces;
-  for (const Line& l : lines) {
-    const auto k = std::lower_bound(ends.begin(), ends.end(), Ends{l.a, l.b}) - ends.begin();
-    std::uint32_t from = l.a;
-    for (const std::uint32_t v : stops[static_cast<std::size_t>(k)]) {
-      pieces.push_back(line(l.group, from, v));
-      from = v;
+/// Splits lines at vertices that lie on them. Remembers which lines have met which vertices: in a further round only
+/// new lines look at all vertices, and the others at new vertices.
+class LineSplitter {
+ public:
+  explicit LineSplitter(const FaceComplex& complex) : complex_(complex) {}
+
+  /// Also splits at the `forced` vertices. `drawing.lines` is sorted and unique, before and after. Returns at how many
+  /// vertices below `first_new` distinct lines were split.
+  std::size_t split(Drawing& drawing, const std::map<Ends, Stops>& forced, std::uint32_t first_new) {
+    const std::vector<Ends> ends = distinct_ends(drawing.lines);
+    const std::size_t before = layers_.size();
+    add_layer(drawing, ends, forced);
+    std::vector<std::vector<Split>> found((ends.size() + kGrain - 1) / kGrain);
+    parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t chunk = begin; chunk < end; ++chunk) {
+        const std::size_t last = std::min(ends.size(), (chunk + 1) * kGrain);
+        auto known = std::lower_bound(checked_.begin(), checked_.end(), ends[chunk * kGrain]);
+        for (std::size_t k = chunk * kGrain; k < last; ++k) {
+          while (known != checked_.end() && *known < ends[k]) ++known;
+          const bool is_checked = known != checked_.end() && *known == ends[k];
+          Stops stops = stops_on(ends[k], is_checked ? before : 0, forced);
+          if (!stops.empty()) found[chunk].push_back({ends[k], std::move(stops)});
+        }
+      }
+    });
+    std::vector<Split> splits;
+    for (auto& some : found) splits.insert(splits.end(), some.begin(), some.end());
+    const auto is_split = [&](const Ends& e) {
+      const auto at = std::lower_bound(splits.begin(), splits.end(), e,
+                                       [](const Split& s, const Ends& value) { return s.line < value; });
+      return at != splits.end() && at->line == e ? &*at : nullptr;
+    };
+    checked_.clear();
+    std::copy_if(ends.begin(), ends.end(), std::back_inserter(checked_), [&](const Ends& e) { return !is_split(e); });
+    if (splits.empty()) return 0;
+
+    std::size_t at_old = 0;
+    for (const Split& s : splits)
+      at_old += static_cast<std::size_t>(
+          std::count_if(s.stops.begin(), s.stops.end(), [&](auto v) { return v < first_new; }));
+    std::vector<Line> pieces;
+    pieces.reserve(drawing.lines.size() + 2 * splits.size());
+    for (const Line& l : drawing.lines) {
+      std::uint32_t from = l.a;
+      if (const Split* s = is_split({l.a, l.b}))
+        for (const std::uint32_t v : s->stops) {
+          pieces.push_back(line(l.group, from, v));
+          from = v;
+        }
+      pieces.push_back(line(l.group, from, l.b));
     }
-    pieces.push_back(line(l.group, from, l.b));
+    drawing.lines = std::move(pieces);
+    keep_unique(drawing.lines);
+    return at_old;
   }
-  lines = std::move(pieces);
-  keep_unique(lines);
-  return at_old;
-}
+
+ private:
+  static constexpr std::size_t kGrain = 1024;
+  struct Split {
+    Ends line;
+    Stops stops;
+  };
+
+  /// The vertices in use that are in no layer yet.
+  void add_layer(const Drawing& drawing, const std::vector<Ends>& ends, const std::map<Ends, Stops>& forced) {
+    in_layer_.resize(complex_.vertices.size());
+    std::vector<std::uint32_t> fresh;
+    const auto use = [&](std::uint32_t v) {
+      if (!in_layer_[v]) fresh.push_back(v);
+      in_layer_[v] = true;
+    };
+    for (const Ends& e : ends) use(e[0]), use(e[1]);
+    for (const auto& [group, v] : drawing.points) use(v);
+    for (const auto& [e, stops] : forced)
+      for (const std::uint32_t v : stops) use(v);
+    std::sort(fresh.begin(), fresh.end());
+    if (!fresh.empty()) layers_.emplace_back(complex_, std::move(fresh));
+  }
+
+  Stops stops_on(const Ends& ends, std::size_t first_layer, const std::map<Ends, Stops>& forced) const {
+    const Vec3 a = complex_.vertices[ends[0]], b = complex_.vertices[ends[1]];
+    const Vec3 d = b - a;
+    const double dd = dot(d, d), tolerance = complex_.line_tolerance(ends[0], ends[1]);
+    std::vector<std::pair<double, std::uint32_t>> on;
+    const auto place = [&](std::uint32_t v) { return dot(complex_.vertices[v] - a, d) / dd; };
+    Box around;  // asked first, being cheaper
+    around.add(a);
+    around.add(b);
+    for (std::size_t k = first_layer; k < layers_.size(); ++k)
+      layers_[k].tree.visit_if(
+          [&](const Box& box) { return box.touches_segment(a, b); },
+          [&](std::uint32_t i) {
+            const std::uint32_t v = layers_[k].vertex[i];
+            if (v == ends[0] || v == ends[1]) return;
+            const double t = place(v);
+            if (t <= 0 || t >= 1) return;
+            if (length(complex_.vertices[v] - a - d * t) <= std::min(tolerance, complex_.tolerance[v]))
+              on.push_back({t, v});
+          });
+    if (const auto it = forced.find(ends); it != forced.end())
+      for (const std::uint32_t v : it->second)
+        if (const double t = place(v); t > 0 && t < 1) on.push_back({t, v});
+    std::sort(on.begin(), on.end());
+    on.erase(std::unique(on.begin(), on.end()), on.end());
+    Stops stops;
+    for (const auto& [t, v] : on) stops.push_back(v);
+    return stops;
+  }
+
+  const FaceComplex& complex_;
+  std::vector<bool> in_layer_;
+  std::deque<Layer> layers_;
+  std::vector<Ends> checked_;  ///< sorted: lines that have met all layers
+};
 
 struct Crossing {
   Ends first, second;
@@ -241,7 +313,7 @@ std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, 
         if (boxes[i].touches(boxes[j])) test(i, j);
     return found;
   }
-  const BoxTree tree(boxes);
+  const BoxTree tree(lines.size(), [&](std::uint32_t i) -> const Box& { return boxes[i]; });
   for (std::size_t i = 0; i < lines.size(); ++i)
     tree.visit_if(
         [&](const Box& b) {
@@ -282,11 +354,15 @@ void drop_crossing(std::vector<Line>& lines, const std::vector<std::vector<Cross
 
 }  // namespace
 
-void split_at_vertices(const FaceComplex& complex, Drawing& drawing) { split(complex, drawing, {}, 0); }
+void split_at_vertices(const FaceComplex& complex, Drawing& drawing) {
+  keep_unique(drawing.lines);
+  LineSplitter(complex).split(drawing, {}, 0);
+}
 
 Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& groups, MeshReport& report) {
   Drawing drawing;
   std::vector<std::uint32_t> group_of(complex.faces.size());
+  drawing.lines.reserve(3 * complex.faces.size());
   for (std::uint32_t g = 0; g < groups.size(); ++g)
     for (const std::uint32_t f : groups[g].faces) {
       group_of[f] = g;
@@ -296,7 +372,8 @@ Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& gr
   keep_unique(drawing.lines);
   const auto first_new = static_cast<std::uint32_t>(complex.vertices.size());
   // T-junctions: vertices of the model inside edges of the model.
-  report.t_junctions = split(complex, drawing, {}, first_new);
+  LineSplitter splitter(complex);
+  report.t_junctions = splitter.split(drawing, {}, first_new);
 
   PointIndex index(complex.vertices, complex.allowed.contact);
   for (std::uint32_t v = 0; v < first_new; ++v) index.add(v);
@@ -327,7 +404,7 @@ Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& gr
   const std::size_t too_many = 1000 + 3 * complex.vertices.size();
   constexpr int kRounds = 8;
   for (int round = 0;; ++round) {
-    split(complex, drawing, forced, 0);
+    splitter.split(drawing, forced, 0);
     forced.clear();
     const auto found = crossings_by_group(complex, groups, drawing.lines);
     std::size_t count = 0;

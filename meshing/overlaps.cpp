@@ -25,6 +25,7 @@ double depth(const std::array<Point2, 3>& t, const Point2& p) {
 Covering::Covering(const FaceComplex& complex, const PlaneGroup& group, std::span<const Material> materials)
     : contact_(complex.allowed.contact), materials_(materials) {
   std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, double> area;
+  pieces_.reserve(group.faces.size());
   std::vector<Box> boxes;
   for (const std::uint32_t f : group.faces) {
     const Face& face = complex.faces[f];
@@ -47,7 +48,7 @@ Covering::Covering(const FaceComplex& complex, const PlaneGroup& group, std::spa
     const bool preferred = m.emits() || m.kind == MaterialKind::glass;
     p.rank = area[{p.material.value, p.surface.value, p.faces_up}] * (preferred ? 0.5 : 1);
   }
-  if (pieces_.size() > 1) tree_.emplace(std::move(boxes));
+  if (pieces_.size() > 1) tree_.emplace(pieces_.size(), StoredBoxes{std::move(boxes)});
 }
 
 const Covering::Piece* Covering::winner(const std::vector<const Piece*>& covering, bool above,

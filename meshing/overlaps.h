@@ -41,7 +41,7 @@ class Covering {
 
   double contact_;
   std::vector<Piece> pieces_;
-  std::optional<BoxTree> tree_;
+  std::optional<BoxTree<StoredBoxes>> tree_;
   std::span<const Material> materials_;
 };
 

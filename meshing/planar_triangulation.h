@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -35,9 +36,10 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
 
 /// Draws points and lines of a plane into a triangulation, ids in ascending order so that the result is always the
 /// same.
-inline std::unordered_map<std::uint32_t, Cdt::Vertex_handle> draw(
-    Cdt& cdt, const Plane& plane, const std::vector<Vec3>& vertices,
-    const std::vector<std::array<std::uint32_t, 2>>& lines, const std::vector<std::uint32_t>& points) {
+inline std::unordered_map<std::uint32_t, Cdt::Vertex_handle> draw(Cdt& cdt, const Plane& plane,
+                                                                  const std::vector<Vec3>& vertices,
+                                                                  std::span<const std::array<std::uint32_t, 2>> lines,
+                                                                  const std::vector<std::uint32_t>& points) {
   std::vector<std::uint32_t> ids(points);
   for (const auto& l : lines) ids.insert(ids.end(), l.begin(), l.end());
   std::sort(ids.begin(), ids.end());

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "meshing/box_tree.h"
+#include "solver/model/parallel.h"
 
 namespace clerestory {
 namespace {
@@ -66,13 +67,15 @@ Plane fit(const Plane& about, const FaceComplex& complex, const std::vector<Face
 std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
   const std::size_t count = complex.faces.size();
   std::vector<FaceShape> shapes(count);
-  std::vector<Box> boxes(count);
-  for (std::size_t f = 0; f < count; ++f) {
-    shapes[f] = shape_of(complex, complex.faces[f]);
-    for (const std::uint32_t v : complex.faces[f].corner) boxes[f].add(complex.vertices[v]);
-    boxes[f] = boxes[f].grown(std::min(complex.allowed.contact, complex.allowed.local_share * shapes[f].longest));
-  }
-  const BoxTree tree(boxes);
+  parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) shapes[f] = shape_of(complex, complex.faces[f]);
+  });
+  const auto box_of = [&](std::uint32_t f) {
+    Box box;
+    for (const std::uint32_t v : complex.faces[f].corner) box.add(complex.vertices[v]);
+    return box.grown(std::min(complex.allowed.contact, complex.allowed.local_share * shapes[f].longest));
+  };
+  const BoxTree tree(count, box_of);
 
   std::vector<std::uint32_t> by_area(count);
   std::iota(by_area.begin(), by_area.end(), 0u);
@@ -86,7 +89,7 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
     std::vector<std::uint32_t> faces{seed};
     placed[seed] = true;
     for (std::size_t k = 0; k < faces.size(); ++k)
-      tree.visit(boxes[faces[k]], [&](std::uint32_t f) {
+      tree.visit(box_of(faces[k]), [&](std::uint32_t f) {
         if (placed[f] || !lies_in(plane, complex, complex.faces[f], shapes[f], drift)) return;
         placed[f] = true;
         faces.push_back(f);

@@ -1,9 +1,11 @@
 #pragma once
 // Points by place: finds the known point nearest to another within a small radius.
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "solver/model/random_stream.h"
@@ -19,12 +21,12 @@ class PointIndex {
   PointIndex(const std::vector<Vec3>& points, double largest_radius) : points_(&points), cell_(8 * largest_radius) {}
 
   void add(std::uint32_t id) {
-    const auto [it, is_new] = head_.try_emplace(key(cell_of((*points_)[id])), id);
     if (next_.size() <= id) next_.resize(id + 1, kNone);
-    if (!is_new) {
-      next_[id] = it->second;
-      it->second = id;
-    }
+    if (2 * (cells_ + 1) > first_.size()) grow();
+    std::uint32_t& first = slot(cell_of((*points_)[id]));
+    if (first == kNone) ++cells_;
+    next_[id] = first;
+    first = id;
   }
   /// The nearest point at most `radius` from p, the lowest index among equals; kNone if there is none.
   std::uint32_t find(const Vec3& p, double radius) const {
@@ -34,9 +36,7 @@ class PointIndex {
     for (std::int64_t x = low.x; x <= high.x; ++x)
       for (std::int64_t y = low.y; y <= high.y; ++y)
         for (std::int64_t z = low.z; z <= high.z; ++z) {
-          const auto it = head_.find(key({x, y, z}));
-          if (it == head_.end()) continue;
-          for (std::uint32_t id = it->second; id != kNone; id = next_[id]) {
+          for (std::uint32_t id = first_in({x, y, z}); id != kNone; id = next_[id]) {
             const double d = length((*points_)[id] - p);
             if (d < best_distance || (d == best_distance && id < best)) {
               best = id;
@@ -50,20 +50,35 @@ class PointIndex {
  private:
   struct Cell {
     std::int64_t x, y, z;
+    bool operator==(const Cell&) const = default;
   };
   Cell cell_of(const Vec3& p) const {
     return {static_cast<std::int64_t>(std::floor(p.x / cell_)), static_cast<std::int64_t>(std::floor(p.y / cell_)),
             static_cast<std::int64_t>(std::floor(p.z / cell_))};
   }
-  static std::uint64_t key(const Cell& c) {
-    return stream_key(static_cast<std::uint64_t>(c.x), static_cast<std::uint64_t>(c.y),
-                      static_cast<std::uint64_t>(c.z));
+  /// Where the first point of a cell is kept, or is to be.
+  std::size_t slot_number(const Cell& c) const {
+    const std::size_t mask = first_.size() - 1;
+    std::size_t k =
+        stream_key(static_cast<std::uint64_t>(c.x), static_cast<std::uint64_t>(c.y), static_cast<std::uint64_t>(c.z)) &
+        mask;
+    while (first_[k] != kNone && cell_of((*points_)[first_[k]]) != c) k = (k + 1) & mask;
+    return k;
+  }
+  std::uint32_t& slot(const Cell& c) { return first_[slot_number(c)]; }
+  std::uint32_t first_in(const Cell& c) const { return first_.empty() ? kNone : first_[slot_number(c)]; }
+  void grow() {
+    const std::vector<std::uint32_t> before = std::move(first_);
+    first_.assign(std::max<std::size_t>(64, 2 * before.size()), kNone);
+    for (const std::uint32_t id : before)
+      if (id != kNone) slot(cell_of((*points_)[id])) = id;
   }
 
   const std::vector<Vec3>* points_;
   double cell_;
-  std::unordered_map<std::uint64_t, std::uint32_t> head_;
-  std::vector<std::uint32_t> next_;
+  std::vector<std::uint32_t> first_;  ///< open hash table of cells: a point of each; half empty, a power of two long
+  std::size_t cells_ = 0;
+  std::vector<std::uint32_t> next_;  ///< by point, another one of its cell
 };
 
 }  // namespace clerestory

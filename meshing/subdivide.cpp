@@ -40,11 +40,62 @@ void keep_each_once(std::vector<MeshTriangle>& triangles) {
   triangles.resize(kept);
 }
 
+/// What a finished plane leaves behind; corners from kInner on count `inner`, its points in the plane.
+struct Shelf {
+  std::vector<MeshTriangle> triangles;
+  std::vector<Point2> inner;
+  std::size_t cells = 0, overlapping = 0;  ///< of all regions when they were first drawn
+};
+
+struct Shape {
+  double longest, shortest, radius;
+  int longest_edge;  ///< opposite to this corner
+};
+
+Shape shape_of(const std::array<Point2, 3>& p) {
+  Shape s{0, Box::kHuge, 0, 0};
+  double product = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point2 &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
+    const double l = std::hypot(b.x - a.x, b.y - a.y);
+    if (l > s.longest) {
+      s.longest = l;
+      s.longest_edge = static_cast<int>(i);
+    }
+    s.shortest = std::min(s.shortest, l);
+    product *= l;
+  }
+  const double twice_area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
+  s.radius = twice_area > 0 ? product / (2 * twice_area) : Box::kHuge;
+  return s;
+}
+bool is_too_long(const Shape& s, double longest) { return s.longest > longest * (1 + 1e-9); }
+bool is_bad(const Shape& s, double longest) {
+  return is_too_long(s, longest) || (s.radius > kRadiusToEdge * s.shortest && s.radius > kFinest * longest);
+}
+
+/// A face alone in its plane that is fine as it is, as most of a finely modelled scene are, needs no triangulation.
+bool keep_lone_face(const FaceComplex& complex, const PlaneGroup& group, std::span<const Ends> lines,
+                    const std::vector<std::uint32_t>& points, double longest, Shelf& shelf) {
+  if (group.faces.size() != 1 || lines.size() != 3 || !points.empty()) return false;
+  const Face& face = complex.faces[group.faces[0]];
+  const auto& c = face.corner;
+  std::array<Point2, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::find(lines.begin(), lines.end(), ends_of(c[k], c[(k + 1) % 3])) == lines.end()) return false;
+    p[k] = group.plane.flatten(complex.vertices[c[k]]);
+  }
+  if (is_bad(shape_of(p), longest)) return false;
+  shelf.triangles.push_back({c, {face.material, face.material, face.surface, face.surface, false, false}});
+  ++shelf.cells;
+  return true;
+}
+
 /// One plane under refinement.
 class RegionMesh {
  public:
   RegionMesh(const FaceComplex& complex, const PlaneGroup& group, std::span<const Material> materials,
-             const std::vector<Ends>& lines, const std::vector<std::uint32_t>& points, double longest)
+             std::span<const Ends> lines, const std::vector<std::uint32_t>& points, double longest)
       : plane_(group.plane), longest_(longest), finest_(kFinest * longest) {
     handle_ = draw(cdt_, plane_, complex.vertices, lines, points);
     Cells cells = mark_sheets(cdt_, Covering(complex, group, materials));
@@ -94,21 +145,18 @@ class RegionMesh {
 
   std::size_t cell_count() const { return cells_; }
   std::size_t overlapping_count() const { return overlapping_; }
-  void collect(std::uint32_t first_inner, std::vector<Vec3>& vertices, std::vector<MeshTriangle>& triangles) const {
-    for (const Point2& p : inner_) vertices.push_back(plane_.lift(p));
+  void collect(Shelf& shelf) const {
+    shelf.inner.insert(shelf.inner.end(), inner_.begin(), inner_.end());
     for (const auto f : cdt_.finite_face_handles()) {
       if (f->info().mark < 0) continue;
       MeshTriangle t{{}, sheets_[static_cast<std::size_t>(f->info().mark)]};
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t id = f->vertex(k)->info().id;
-        t.corner[static_cast<std::size_t>(k)] = id >= kInner ? first_inner + (id - kInner) : id;
-      }
+      for (int k = 0; k < 3; ++k) t.corner[static_cast<std::size_t>(k)] = f->vertex(k)->info().id;
       if (t.sheet.flipped) {
         std::swap(t.corner[1], t.corner[2]);
         std::swap(t.sheet.material_above, t.sheet.material_below);
         std::swap(t.sheet.surface_above, t.sheet.surface_below);
       }
-      triangles.push_back(t);
+      shelf.triangles.push_back(t);
     }
   }
 
@@ -120,35 +168,16 @@ class RegionMesh {
     std::array<Vertex, 3> corner;
     bool operator<(const Bad& b) const { return radius != b.radius ? radius < b.radius : ids > b.ids; }
   };
-  struct Shape {
-    double longest, shortest, radius;
-    int longest_edge;
-  };
-
   static double distance(const CdtKernel::Point_2& a, const CdtKernel::Point_2& b) {
     return std::hypot(b.x() - a.x(), b.y() - a.y());
   }
   static Shape shape_of(Cdt::Face_handle f) {
-    Shape s{0, Box::kHuge, 0, 0};
-    double product = 1;
-    for (int i = 0; i < 3; ++i) {
-      const double l = distance(f->vertex((i + 1) % 3)->point(), f->vertex((i + 2) % 3)->point());
-      if (l > s.longest) {
-        s.longest = l;
-        s.longest_edge = i;
-      }
-      s.shortest = std::min(s.shortest, l);
-      product *= l;
-    }
-    const auto &p = f->vertex(0)->point(), &q = f->vertex(1)->point(), &r = f->vertex(2)->point();
-    const double twice_area = (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
-    s.radius = twice_area > 0 ? product / (2 * twice_area) : Box::kHuge;
-    return s;
+    std::array<Point2, 3> p;
+    for (int i = 0; i < 3; ++i) p[static_cast<std::size_t>(i)] = {f->vertex(i)->point().x(), f->vertex(i)->point().y()};
+    return clerestory::shape_of(p);
   }
-  bool is_too_long(const Shape& s) const { return s.longest > longest_ * (1 + 1e-9); }
-  bool is_bad(const Shape& s) const {
-    return is_too_long(s) || (s.radius > kRadiusToEdge * s.shortest && s.radius > finest_);
-  }
+  bool is_too_long(const Shape& s) const { return clerestory::is_too_long(s, longest_); }
+  bool is_bad(const Shape& s) const { return clerestory::is_bad(s, longest_); }
 
   void consider(Cdt::Face_handle f) {
     if (f->info().mark < 0) return;
@@ -279,73 +308,135 @@ double estimate_triangles(const FaceComplex& complex, const std::vector<PlanarDo
   return area / (0.21 * longest * longest) + pieces;
 }
 
+/// Lines divided evenly, once for all regions that use them.
+class DividedLines {
+ public:
+  DividedLines(FaceComplex& complex, const std::vector<PlanarDomain>& domains, double longest) {
+    std::size_t count = 0;
+    for (const PlanarDomain& d : domains) count += d.lines.size();
+    uses_.reserve(count);
+    for (std::uint32_t d = 0; d < domains.size(); ++d)
+      for (const Ends& l : domains[d].lines) uses_.push_back({ends_of(l[0], l[1]), d});
+    std::sort(uses_.begin(), uses_.end());
+    uses_.erase(std::unique(uses_.begin(), uses_.end()), uses_.end());
+    begin_of_region_.assign(domains.size() + 1, 0);
+    pieces_.reserve(uses_.size());
+    for (std::uint32_t k = 0; k < uses_.size();) {
+      const Ends whole = uses_[k].first;
+      const std::uint32_t first_use = k;
+      const std::size_t first_piece = pieces_.size();
+      const Vec3 a = complex.vertices[whole[0]], b = complex.vertices[whole[1]];
+      const int pieces = std::max(1, static_cast<int>(std::ceil(length(b - a) / (kLineShare * longest) - 1e-9)));
+      std::uint32_t from = whole[0];
+      for (int i = 1; i <= pieces; ++i) {
+        std::uint32_t to = whole[1];
+        if (i < pieces) {
+          to = static_cast<std::uint32_t>(complex.vertices.size());
+          complex.vertices.push_back(a + (b - a) * (static_cast<double>(i) / pieces));
+        }
+        pieces_.push_back({ends_of(from, to), first_use});
+        from = to;
+      }
+      for (; k < uses_.size() && uses_[k].first == whole; ++k)
+        begin_of_region_[uses_[k].second + 1] += pieces_.size() - first_piece;
+    }
+    for (std::size_t d = 0; d < domains.size(); ++d) begin_of_region_[d + 1] += begin_of_region_[d];
+    by_region_.resize(begin_of_region_.back());
+    std::vector<std::size_t> next(begin_of_region_.begin(), begin_of_region_.end() - 1);
+    for (const Piece& p : pieces_)
+      for (const auto& [whole, d] : users(p.first_use)) by_region_[next[d]++] = p.ends;
+    std::sort(pieces_.begin(), pieces_.end(), [](const Piece& p, const Piece& q) { return p.ends < q.ends; });
+  }
+
+  std::span<const Ends> of_region(std::size_t d) const {
+    return std::span(by_region_).subspan(begin_of_region_[d], begin_of_region_[d + 1] - begin_of_region_[d]);
+  }
+  /// Halves a piece at a new vertex. Calls use(region) for every region that must do so too.
+  template <class Use>
+  void halve(FaceComplex& complex, const Ends& e, const Use& use) {
+    std::uint32_t first_use = 0;
+    if (const auto half = halves_.find(key(e)); half != halves_.end()) {
+      first_use = half->second;
+    } else {
+      const auto known = std::lower_bound(pieces_.begin(), pieces_.end(), e,
+                                          [](const Piece& p, const Ends& value) { return p.ends < value; });
+      if (known == pieces_.end() || known->ends != e) return;  // a crossing that tolerances hid from other regions
+      first_use = known->first_use;
+    }
+    const auto middle = static_cast<std::uint32_t>(complex.vertices.size());
+    complex.vertices.push_back((complex.vertices[e[0]] + complex.vertices[e[1]]) / 2);
+    halves_.emplace(key(ends_of(e[0], middle)), first_use);
+    halves_.emplace(key(ends_of(e[1], middle)), first_use);
+    for (const auto& [whole, d] : users(first_use)) use(d, middle);
+  }
+
+ private:
+  using LineUse = std::pair<Ends, std::uint32_t>;  ///< line, region
+  struct Piece {
+    Ends ends;
+    std::uint32_t first_use;  ///< of its line in uses_
+  };
+  static std::uint64_t key(const Ends& e) { return std::uint64_t{e[0]} << 32 | e[1]; }
+  std::span<const LineUse> users(std::uint32_t first) const {
+    std::size_t end = first;
+    while (end < uses_.size() && uses_[end].first == uses_[first].first) ++end;
+    return std::span(uses_).subspan(first, end - first);
+  }
+
+  std::vector<LineUse> uses_;
+  std::vector<Piece> pieces_;
+  std::vector<std::size_t> begin_of_region_;
+  std::vector<Ends> by_region_;
+  std::unordered_map<std::uint64_t, std::uint32_t> halves_;
+};
+
 std::vector<MeshTriangle> subdivide(FaceComplex& complex, const std::vector<PlaneGroup>& groups,
                                     std::span<const Material> materials, const std::vector<PlanarDomain>& domains,
                                     double longest, MeshReport& report, const Monitor& monitor) {
-  // Even division of every line, once for all regions that use it.
-  std::vector<std::pair<Ends, std::uint32_t>> uses;
-  for (std::uint32_t d = 0; d < domains.size(); ++d)
-    for (const Ends& l : domains[d].lines) uses.push_back({ends_of(l[0], l[1]), d});
-  std::sort(uses.begin(), uses.end());
-  uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
-  std::vector<std::vector<Ends>> lines(domains.size());
-  std::vector<std::vector<std::uint32_t>> users;
-  std::unordered_map<std::uint64_t, std::uint32_t> users_of;
-  const auto key = [](const Ends& e) { return std::uint64_t{e[0]} << 32 | e[1]; };
-  for (std::size_t k = 0; k < uses.size();) {
-    const Ends whole = uses[k].first;
-    std::vector<std::uint32_t> regions;
-    for (; k < uses.size() && uses[k].first == whole; ++k) regions.push_back(uses[k].second);
-    const Vec3 a = complex.vertices[whole[0]], b = complex.vertices[whole[1]];
-    const int pieces = std::max(1, static_cast<int>(std::ceil(length(b - a) / (kLineShare * longest) - 1e-9)));
-    std::uint32_t from = whole[0];
-    for (int i = 1; i <= pieces; ++i) {
-      std::uint32_t to = whole[1];
-      if (i < pieces) {
-        to = static_cast<std::uint32_t>(complex.vertices.size());
-        complex.vertices.push_back(a + (b - a) * (static_cast<double>(i) / pieces));
-      }
-      const Ends piece = ends_of(from, to);
-      users_of.emplace(key(piece), static_cast<std::uint32_t>(users.size()));
-      for (const std::uint32_t d : regions) lines[d].push_back(piece);
-      from = to;
-    }
-    users.push_back(std::move(regions));
-  }
+  DividedLines lines(complex, domains, longest);
+  const auto draw_region = [&](std::size_t d) {
+    return std::make_unique<RegionMesh>(complex, groups[domains[d].group], materials, lines.of_region(d),
+                                        domains[d].points, longest);
+  };
 
+  // Most regions are done at once. They are put away as triangles, and drawn again if a neighbour halves their line.
+  constexpr std::size_t kShelf = 256;
+  std::vector<Shelf> shelves((domains.size() + kShelf - 1) / kShelf);
+  std::vector<std::array<std::size_t, 2>> put_away(domains.size() + 1);  // first triangle and inner point in the shelf
   std::vector<std::unique_ptr<RegionMesh>> meshes(domains.size());
-  parallel_for(domains.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t d = begin; d < end; ++d)
-      meshes[d] = std::make_unique<RegionMesh>(complex, groups[domains[d].group], materials, lines[d],
-                                               domains[d].points, longest);
+  std::vector<std::vector<Ends>> asked_by_shelf(shelves.size());
+  monitor.report("mesh", 0);
+  parallel_for(shelves.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end && !monitor.is_interrupted(); ++s)
+      for (std::size_t d = s * kShelf; d < std::min(domains.size(), (s + 1) * kShelf); ++d) {
+        Shelf& shelf = shelves[s];
+        put_away[d] = {shelf.triangles.size(), shelf.inner.size()};
+        if (keep_lone_face(complex, groups[domains[d].group], lines.of_region(d), domains[d].points, longest, shelf))
+          continue;
+        auto mesh = draw_region(d);
+        shelf.cells += mesh->cell_count();
+        shelf.overlapping += mesh->overlapping_count();
+        const std::vector<Ends> asked = mesh->refine(true);
+        asked_by_shelf[s].insert(asked_by_shelf[s].end(), asked.begin(), asked.end());
+        if (asked.empty())
+          mesh->collect(shelf);
+        else
+          meshes[d] = std::move(mesh);
+      }
   });
+  std::vector<Ends> all;
+  for (const auto& some : asked_by_shelf) all.insert(all.end(), some.begin(), some.end());
+  asked_by_shelf = {};
 
-  std::vector<std::uint32_t> active(domains.size());
-  for (std::uint32_t d = 0; d < domains.size(); ++d) active[d] = d;
-  for (int round = 0; round <= kRounds && !active.empty(); ++round) {
+  for (int round = 1; round <= kRounds && !all.empty() && !monitor.is_interrupted(); ++round) {
     monitor.report("mesh", static_cast<double>(round) / (kRounds + 1));
-    std::vector<std::vector<Ends>> asked(active.size());
-    parallel_for(active.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) asked[k] = meshes[active[k]]->refine(round < kRounds);
-    });
-    std::vector<Ends> all;
-    for (const auto& some : asked) all.insert(all.end(), some.begin(), some.end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
-
     std::vector<std::pair<std::uint32_t, Halving>> work;  // region, what to do there
-    for (const Ends& e : all) {
-      const auto known = users_of.find(key(e));
-      if (known == users_of.end()) continue;  // a crossing that tolerances hid from every other region
-      const std::uint32_t list = known->second;
-      const auto middle = static_cast<std::uint32_t>(complex.vertices.size());
-      complex.vertices.push_back((complex.vertices[e[0]] + complex.vertices[e[1]]) / 2);
-      users_of.emplace(key(ends_of(e[0], middle)), list);
-      users_of.emplace(key(ends_of(e[1], middle)), list);
-      for (const std::uint32_t d : users[list]) work.push_back({d, {e, middle}});
-    }
+    for (const Ends& e : all)
+      lines.halve(complex, e, [&](std::uint32_t d, std::uint32_t middle) { work.push_back({d, {e, middle}}); });
     std::stable_sort(work.begin(), work.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-    active.clear();
+    std::vector<std::uint32_t> active;
     std::vector<std::size_t> begin_of;
     for (std::size_t k = 0; k < work.size(); ++k)
       if (k == 0 || work[k].first != work[k - 1].first) {
@@ -353,18 +444,53 @@ std::vector<MeshTriangle> subdivide(FaceComplex& complex, const std::vector<Plan
         begin_of.push_back(k);
       }
     begin_of.push_back(work.size());
+    std::vector<std::vector<Ends>> asked(active.size());
     parallel_for(active.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
+      for (std::size_t k = begin; k < end; ++k) {
+        auto& mesh = meshes[active[k]];
+        if (!mesh) {
+          mesh = draw_region(active[k]);
+          mesh->refine(true);
+        }
         for (std::size_t w = begin_of[k]; w < begin_of[k + 1]; ++w)
-          meshes[active[k]]->halve(work[w].second, complex.vertices[work[w].second.middle]);
+          mesh->halve(work[w].second, complex.vertices[work[w].second.middle]);
+        asked[k] = mesh->refine(round < kRounds);
+      }
     });
+    all.clear();
+    for (const auto& some : asked) all.insert(all.end(), some.begin(), some.end());
   }
 
   std::vector<MeshTriangle> triangles;
-  for (const auto& mesh : meshes) {
-    mesh->collect(static_cast<std::uint32_t>(complex.vertices.size()), complex.vertices, triangles);
-    report.planar_regions += mesh->cell_count();
-    report.overlapping_regions += mesh->overlapping_count();
+  for (std::size_t s = 0; s < shelves.size(); ++s) {
+    const std::size_t last = std::min(domains.size(), (s + 1) * kShelf);
+    for (std::size_t d = s * kShelf; d < last; ++d) {
+      Shelf own;
+      std::span<const MeshTriangle> found;
+      std::span<const Point2> inner;
+      if (meshes[d]) {
+        meshes[d]->collect(own);
+        meshes[d].reset();
+        found = own.triangles;
+        inner = own.inner;
+      } else {
+        const auto [t0, p0] = put_away[d];
+        const bool is_last = d + 1 == last;
+        found = std::span(shelves[s].triangles)
+                    .subspan(t0, (is_last ? shelves[s].triangles.size() : put_away[d + 1][0]) - t0);
+        inner = std::span(shelves[s].inner).subspan(p0, (is_last ? shelves[s].inner.size() : put_away[d + 1][1]) - p0);
+      }
+      const auto first_inner = static_cast<std::uint32_t>(complex.vertices.size());
+      for (const Point2& p : inner) complex.vertices.push_back(groups[domains[d].group].plane.lift(p));
+      for (MeshTriangle t : found) {
+        for (std::uint32_t& c : t.corner)
+          if (c >= kInner) c = first_inner + (c - kInner);
+        triangles.push_back(t);
+      }
+    }
+    report.planar_regions += shelves[s].cells;
+    report.overlapping_regions += shelves[s].overlapping;
+    shelves[s].triangles = {};
   }
   keep_each_once(triangles);
   return triangles;

@@ -72,7 +72,7 @@ inline std::size_t t_vertices(const PatchSet& p, double share = 1e-9) {
     boxes[v].add(p.vertices[v]);
     boxes[v] = boxes[v].grown(near);
   }
-  const BoxTree tree(std::move(boxes));
+  const BoxTree tree(boxes.size(), StoredBoxes{boxes});
   std::size_t count = 0;
   for (const auto& c : p.corners)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -109,7 +109,7 @@ inline std::size_t coincident_triangles(const PatchSet& p) {
     for (const VertexId v : p.corners[t]) boxes[t].add(p.vertices[v]);
     boxes[t] = boxes[t].grown(near);
   }
-  const BoxTree tree(boxes);
+  const BoxTree tree(boxes.size(), StoredBoxes{boxes});
   std::size_t count = 0;
   for (std::uint32_t t = 0; t < p.triangle_count(); ++t) {
     Vec3 centre;

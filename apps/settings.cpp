@@ -32,12 +32,7 @@ std::optional<T> first_of(const std::optional<T>& a, const std::optional<T>& b) 
 
 }  // namespace
 
-std::string problem_with_method(const std::string& name) {
-  if (name == "hierarchical")
-    return "method 'hierarchical' is not in this version yet; use progressive, which is the default.";
-  return problem_with(name, kMethodNames, "method");
-}
-
+std::string problem_with_method(const std::string& name) { return problem_with(name, kMethodNames, "method"); }
 std::string problem_with_accuracy(const std::string& name) { return problem_with(name, kAccuracyNames, "accuracy"); }
 
 Settings effective_settings(const CommonArguments& common, const SolveArguments& arguments, const Scene& scene) {
@@ -53,7 +48,7 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   }
   s.solve.seed = first_of(common.seed, file.seed).value_or(s.solve.seed);
   s.mesh.max_element = first_of(arguments.max_element, file.max_element);
-  s.mesh.target_triangles = target_triangles(s.solve.accuracy);
+  s.mesh.target_triangles = target_triangles(s.solve.method, s.solve.accuracy);
   s.target_error = first_of(arguments.target_error, file.target_error);
   s.time_limit = first_of(arguments.time_limit, file.time_limit);
   s.channels = scene.channels();

@@ -151,9 +151,14 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   std::array<Spectrum, 16> values;
   std::size_t queued = 0;
   Spectrum sum(0.0);
+  double noise = 0;
   const auto flush = [&] {
     bundle.look(std::span(directions).first(queued), std::span(density).first(queued), std::span(values).first(queued));
     for (std::size_t k = 0; k < queued; ++k) sum += values[k] / density[k];
+    for (std::size_t k = 0; k + 1 < queued; k += 2) {
+      const double difference = luminous_mean(values[k]) / density[k] - luminous_mean(values[k + 1]) / density[k + 1];
+      noise += difference * difference;
+    }
     rays += queued;
     queued = 0;
   };
@@ -168,7 +173,7 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   }
   if (queued) flush();
 
-  PointLight at{sum, Spectrum(0.0)};
+  PointLight at{sum, Spectrum(0.0), std::sqrt(noise)};
   if (to_lamps > 0) {
     at.E += bright_patches(light, p, frame, pattern, shares);
     rays += static_cast<unsigned>(to_lamps);

@@ -13,6 +13,7 @@ namespace clerestory {
 struct PointLight {
   Spectrum E;             ///< from everything
   Spectrum small_lights;  ///< from luminaires without extent and suns; part of E
+  double noise = 0;  ///< standard error of E from the bundle, luminous mean, by the differences of neighbouring rays
 };
 
 /// Rays for each stratum as powers of 2: where a pilot's ray and its neighbours' come back alike, the least. A pilot's

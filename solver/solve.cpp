@@ -32,7 +32,10 @@ constexpr double kFewestRays = 64;  ///< a patch met by fewer is known to worse 
 
 }  // namespace
 
-double target_triangles(Accuracy accuracy) { return by_accuracy(accuracy, 2000, 6000, 20'000); }
+double target_triangles(Method method, Accuracy accuracy) {
+  return method == Method::hierarchical ? by_accuracy(accuracy, 1500, 4000, 10'000)
+                                        : by_accuracy(accuracy, 2000, 6000, 20'000);
+}
 
 int paths_per_point(const SolveOptions& options) {
   return by_accuracy(options.accuracy, 64, 256, 1024) << options.tighten;
@@ -55,12 +58,14 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
     return measure_closure(problem, rays, options.seed);
   };
   switch (options.method) {
+    case Method::hierarchical:
+      break;
     case Method::progressive: {
       const ShootOptions shoot_options{.stop_fraction = by_accuracy(options.accuracy, 10, 3, 1) * 1e-3,
                                        .rays_per_patch = by_accuracy(options.accuracy, 64, 256, 1024) * 1.0 * more,
                                        .seed = options.seed};
       Solution solution = shoot(problem, direct, closure(), shoot_options, monitor);
-      const GatherQuality quality{.grid = 12, .rays = by_accuracy(options.accuracy, 144, 288, 576), .lamp_rays = 64};
+      const GatherQuality quality{.rays = 256, .most_rays = by_accuracy(options.accuracy, 256, 512, 1024), .lamp_rays = 64};
       const std::size_t gathered = gather_noisy_patches(problem, solution, kFewestRays, quality, options.seed, monitor);
       solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
       return solution;
@@ -77,7 +82,7 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
       return solution;
     }
   }
-  throw std::logic_error("unknown method");
+  throw std::logic_error("solve() has no such method");
 }
 
 }  // namespace clerestory

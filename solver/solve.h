@@ -12,27 +12,28 @@
 
 namespace clerestory {
 
-enum class Method { progressive, gauss_seidel, jacobi, path };
+enum class Method { hierarchical, progressive, gauss_seidel, jacobi, path };
 enum class Accuracy { draft, standard, fine };
 
 /// Names as typed by users, in the order of the enumerators.
-inline constexpr std::string_view kMethodNames[] = {"progressive", "gauss-seidel", "jacobi", "path"};
+inline constexpr std::string_view kMethodNames[] = {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"};
 inline constexpr std::string_view kAccuracyNames[] = {"draft", "standard", "fine"};
 
 struct SolveOptions {
-  Method method = Method::progressive;
+  Method method = Method::hierarchical;
   Accuracy accuracy = Accuracy::standard;
   std::uint64_t seed = 1;
   int tighten = 0;  ///< times that the ray counts were doubled to reach a target error
 };
 
-/// Triangles to aim for when no longest edge is given.
-double target_triangles(Accuracy accuracy);
+/// Triangles to aim for when no longest edge is given; few where elements are halved later.
+double target_triangles(Method method, Accuracy accuracy);
 
 /// Paths from each patch or vertex by the method `path`; sensors get four times as many.
 int paths_per_point(const SolveOptions& options);
 
-/// Radiosity and irradiance of every patch.
+/// Radiosity and irradiance of every patch, by any method but the hierarchical one, which makes patches of its own
+/// (solve_hierarchical.h).
 ///
 /// throws   InputError when the method needs more memory than there is.
 /// Stops early when the monitor says so, and returns what is solved so far, marked in Solution::stop.

@@ -19,6 +19,7 @@
 #include "solver/gather.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
+#include "solver/solve_hierarchical.h"
 
 namespace clerestory {
 namespace {
@@ -84,25 +85,33 @@ std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, 
   lap.add_to(seconds.build);
 
   const double direct_before = console.seconds_in("direct");
-  Solution solution = solve(problem, settings.solve, monitor);
+  VertexLightmap lightmap = make_lightmap(patches);
+  Solution solution;
+  if (settings.solve.method == Method::hierarchical) {
+    ShownSolution shown = solve_hierarchical(problem, lightmap, repairs.max_element, settings.solve, monitor);
+    solution = std::move(shown.solution);
+    lightmap = std::move(shown.lightmap);
+    patches = std::move(shown.elements);  // rays know which part of a triangle is which element
+  } else {
+    solution = solve(problem, settings.solve, monitor);
+    average_to_points(patches, solution.E, lightmap);
+    if (settings.solve.accuracy != Accuracy::draft && !monitor.should_stop())
+      solution.rays += gather_at_points(problem, solution, lightmap, settings.solve, monitor);
+  }
   const double direct = console.seconds_in("direct") - direct_before;
   seconds.direct += direct;
   seconds.gather -= direct;
   lap.add_to(seconds.gather);
 
-  VertexLightmap lightmap = make_lightmap(patches);
-  average_to_points(patches, solution.E, lightmap);
-  if (settings.solve.accuracy != Accuracy::draft && !monitor.should_stop())
-    solution.rays += gather_at_points(problem, solution, lightmap, settings.solve, monitor);
   PointIrradiance at_sensors = gather_all_sensors(problem, solution, sensors, settings.solve, monitor);
   solution.rays += at_sensors.rays;
   if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
   lap.add_to(seconds.reconstruct);
 
   std::optional<MeasuredError> error, error_sensors;
-  if (!monitor.should_stop()) error = if_measured(measure_error(problem, lightmap, settings.solve, monitor));
+  if (!monitor.should_stop()) error = if_measured(measure_error(problem, lightmap, settings.solve, solution.rays, monitor));
   if (!monitor.should_stop() && !sensors.empty())
-    error_sensors = if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, monitor));
+    error_sensors = if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, at_sensors.rays, monitor));
   if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
   lap.add_to(seconds.measure);
   return Solved{std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),
@@ -236,7 +245,7 @@ void add_solve_command(CLI::App& program, Task& task) {
   require_extension(command, "--output", ".vtp");
   SolveArguments& s = arguments->solve;
   add_checked_word(command, "--method", s.method, problem_with_method,
-                   "progressive, gauss-seidel, jacobi, or path, the unbiased reference (default: progressive)");
+                   "hierarchical, progressive, gauss-seidel, jacobi, or path, the unbiased reference (default: hierarchical)");
   add_checked_word(command, "--accuracy", s.accuracy, problem_with_accuracy,
                    "draft, standard or fine (default: standard)");
   add_positive_option(command, "--target-error", s.target_error, "SHARE",

@@ -31,6 +31,7 @@ class Gatherer {
     const int channels = light_.problem.patches.channels;
     field.E.value.resize(end * static_cast<std::size_t>(channels));
     field.small_lights.value.resize(field.E.value.size());
+    field.noise.resize(end);
     if (pilots_) {
       const std::size_t own = pilot_of_.empty() ? end : pilot_of_.size();
       for (std::size_t p = pilot_of_.size(); p < end; ++p)
@@ -68,9 +69,11 @@ class Gatherer {
       const PointLight here = gather_point(light_, x, n, pattern_, *shares, rays);
       mean.E += here.E * at.sample_weight[s];
       mean.small_lights += here.small_lights * at.sample_weight[s];
+      mean.noise += here.noise * at.sample_weight[s];
     }
     field.E.set(p, mean.E);
     field.small_lights.set(p, mean.small_lights);
+    field.noise[p] = mean.noise;
   }
 
   const Illumination light_;
@@ -115,10 +118,10 @@ struct Candidate {
 };
 
 /// Leaves that interpolate worse than the tolerance, the worst first.
-std::vector<Candidate> too_coarse(const ElementMesh& mesh, const Field& field_E, const FieldOptions& options) {
+std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options) {
   const std::vector<std::uint32_t> leaves = mesh.leaves();
-  std::vector<double> E(field_E.size());
-  for (std::size_t p = 0; p < E.size(); ++p) E[p] = luminous_mean(field_E[p]);
+  std::vector<double> E(field.E.size());
+  for (std::size_t p = 0; p < E.size(); ++p) E[p] = luminous_mean(field.E[p]);
   double flux = 0, area = 0;
   for (const std::uint32_t leaf : leaves) {
     const auto& e = mesh[leaf];
@@ -136,7 +139,8 @@ std::vector<Candidate> too_coarse(const ElementMesh& mesh, const Field& field_E,
     double off = 0;
     for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, e.point, gradient, k)));
     const double level = std::max((E[e.point[0]] + E[e.point[1]] + E[e.point[2]]) / 3, dark);
-    if (off > options.tolerance * level) worst.push_back({off / level, leaf});
+    const double noise = (field.noise[e.point[0]] + field.noise[e.point[1]] + field.noise[e.point[2]]) / 3;
+    if (off > std::max(options.tolerance * level, noise)) worst.push_back({off / level, leaf});
   }
   std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
     return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
@@ -155,7 +159,7 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
     field.complete = gatherer.gather(field, monitor);
     if (!field.complete || round == kMostRounds || mesh.points().position.size() >= options.most_points) break;
     std::vector<std::uint32_t> marked;
-    for (const Candidate& c : too_coarse(mesh, field.E, options)) {
+    for (const Candidate& c : too_coarse(mesh, field, options)) {
       if (mesh.points().position.size() + marked.size() >= options.most_points) break;
       marked.push_back(c.leaf);
     }

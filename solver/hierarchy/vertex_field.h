@@ -19,7 +19,8 @@ struct FieldOptions {
 /// P x channels, by point of the mesh [W/m2].
 struct VertexField {
   Field E;
-  Field small_lights;  ///< part of E: from luminaires without extent and suns
+  Field small_lights;         ///< part of E: from luminaires without extent and suns
+  std::vector<double> noise;  ///< P, standard error of E, luminous mean
   unsigned long long rays = 0;
   bool complete = true;  ///< false: the monitor stopped it, and points from `reached` on hold nothing
   std::size_t reached = 0;

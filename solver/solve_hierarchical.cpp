@@ -1,0 +1,135 @@
+#include "solver/solve_hierarchical.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/gather.h"
+#include "solver/hierarchy/vertex_field.h"
+#include "solver/methods/hierarchical.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+/// What --accuracy stands for.
+struct Detail {
+  int bundle_rays, lamp_rays;
+  double element_tolerance;  ///< of the irradiance within an element
+  double vertex_tolerance;   ///< of the irradiance between vertices
+  double finest;             ///< shortest edge / longest edge
+};
+
+Detail detail(const SolveOptions& options) {
+  const int more = 1 << options.tighten;
+  const double finer = std::pow(0.7071, options.tighten);
+  switch (options.accuracy) {
+    case Accuracy::draft:
+      return {64 * more, 32 * more, 0.3, 0.08 * finer, 1.0 / 4};
+    case Accuracy::standard:
+      return {256 * more, 64 * more, 0.1, 0.025 * finer, 1.0 / 8};
+    case Accuracy::fine:
+      return {512 * more, 128 * more, 0.05, 0.0125 * finer, 1.0 / 16};
+  }
+  return {};
+}
+
+/// Irradiance of the leaves from that at their vertices. Leaves of element j of the transport are those of its own that
+/// follow each other; where sun or lamp light varies among their corners, their mean is put right by what the transport
+/// knows of it.
+Field field_on_leaves(const ElementMesh& mesh, const std::vector<std::uint32_t>& transport_leaves,
+                      const HierarchicalSolution& coarse, const VertexField& field) {
+  constexpr double kVaries = 0.1;  // less is left to the vertices, which know it as well
+  Field E = leaf_irradiance(mesh, field.E);
+  if (coarse.small_lights.value.empty()) return E;
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  std::vector<std::uint32_t> stack;
+  std::size_t begin = 0;
+  for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
+    std::size_t end = begin;
+    Spectrum mean(0.0);
+    double low = 1e300, high = 0, share = 0;
+    for (stack.assign(1, transport_leaves[j]); !stack.empty();) {
+      const auto& e = mesh[stack.back()];
+      stack.pop_back();
+      if (!e.is_leaf()) {
+        stack.push_back(e.first_half), stack.push_back(e.first_half + 1);
+        continue;
+      }
+      const double part = std::ldexp(1.0, -e.level);
+      for (const std::uint32_t p : e.point) {
+        const Spectrum lamps = field.small_lights[p];
+        mean += lamps * (part / 3);
+        low = std::min(low, luminous_mean(lamps)), high = std::max(high, luminous_mean(lamps));
+      }
+      share += part;
+      ++end;
+    }
+    const Spectrum exact = coarse.small_lights[j];
+    if (high - low > kVaries * high) {
+      const Spectrum missing = exact - mean / share;
+      for (std::size_t i = begin; i < end; ++i) {
+        E.add(i, missing);
+        for (int c = 0; c < E.channels; ++c) E.at(i, c) = std::max(E.at(i, c), 0.0);
+      }
+    }
+    begin = end;
+  }
+  return E;
+}
+
+/// Points not reached take the mean of the elements around them, middles that of the ends they stand between.
+void fill_unreached(const ElementMesh& mesh, const std::vector<std::uint32_t>& transport_leaves,
+                    const PatchSet& elements, const Field& E, VertexField& field) {
+  std::vector<double> area(field.E.size(), 0.0);
+  for (std::size_t j = 0; j < transport_leaves.size(); ++j)
+    for (const std::uint32_t p : mesh[transport_leaves[j]].point) {
+      if (p < field.reached) continue;
+      field.E.set(p, (field.E[p] * area[p] + E[j] * elements.area[j]) / (area[p] + elements.area[j]));
+      area[p] += elements.area[j];
+    }
+  for (std::size_t p = field.reached; p < field.E.size(); ++p)
+    if (area[p] == 0) field.E.set(p, (field.E[mesh.ends(p)[0]] + field.E[mesh.ends(p)[1]]) / 2);
+}
+
+}  // namespace
+
+ShownSolution solve_hierarchical(const Problem& problem, const VertexLightmap& map, double longest_edge,
+                                 const SolveOptions& options, const Monitor& monitor) {
+  const Detail d = detail(options);
+  ElementMesh mesh(problem.patches, map);
+  HierarchicalSolution coarse = hierarchical(problem, mesh,
+                                             {.bundle_rays = d.bundle_rays,
+                                              .lamp_rays = d.lamp_rays,
+                                              .tolerance = d.element_tolerance,
+                                              .shortest_edge = d.finest * longest_edge,
+                                              .seed = options.seed},
+                                             monitor);
+  const std::vector<std::uint32_t> transport_leaves = mesh.leaves();
+  const Problem transport{coarse.elements, problem.rays, problem.lights};
+  VertexField field = gather_field(transport, coarse.solution.B, mesh,
+                                   {.tolerance = d.vertex_tolerance,
+                                    .shortest_edge = d.finest * longest_edge,
+                                    .most_points = 20 * map.position.size() + 10'000,
+                                    .quality = vertex_quality(options),
+                                    .seed = options.seed},
+                                   monitor);
+
+  ShownSolution shown{mesh.leaf_patches(), mesh.leaf_lightmap(), std::move(coarse.solution)};
+  Solution& solution = shown.solution;
+  solution.rays += field.rays;
+  solution.log.push_back(std::to_string(transport_leaves.size()) + " elements for transport, " +
+                         std::to_string(mesh.leaf_count()) + " shown on " +
+                         std::to_string(mesh.points().position.size()) + " points");
+  if (!field.complete) {
+    if (solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
+    fill_unreached(mesh, transport_leaves, coarse.elements, solution.E, field);
+  }
+  solution.E = field_on_leaves(mesh, transport_leaves, coarse, field);
+  shown.lightmap.E = std::move(field.E);
+  solution.B = Field(shown.elements.patch_count(), shown.elements.channels);
+  for (std::size_t i = 0; i < shown.elements.patch_count(); ++i)
+    solution.B.set(i, shown.elements.M[i] + shown.elements.rho[i] * solution.E[i]);
+  return shown;
+}
+
+}  // namespace clerestory

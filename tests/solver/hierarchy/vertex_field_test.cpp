@@ -1,0 +1,120 @@
+#include "solver/hierarchy/vertex_field.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "solver/gather_point.h"
+#include "solver/model/parallel.h"
+#include "tests/solver/hierarchy/field_scenes.h"
+
+namespace clerestory {
+namespace {
+
+using testing::MeshedRoom;
+
+constexpr GatherQuality kFew{.rays = 256, .most_rays = 256, .lamp_rays = 256};
+
+Field emission(const PatchSet& patches) { return patches.M; }
+
+TEST(GatherField, HalvesWhereShadowsAreAndNotWhereLightIsEven) {
+  const MeshedRoom room(testing::room_with_box(), 0.6);
+  ElementMesh mesh(room.patches, room.map);
+  const VertexField field = gather_field(room.problem(), emission(room.patches), mesh,
+                                         {.tolerance = 0.05, .shortest_edge = 0.08, .quality = kFew});
+  EXPECT_TRUE(field.complete);
+  EXPECT_EQ(field.E.size(), mesh.points().position.size());
+  double near_box = 0, far = 0, near_count = 0, far_count = 0;
+  for (const std::uint32_t leaf : mesh.leaves()) {
+    const auto x = mesh.corner_positions(leaf);
+    const Vec3 c = (x[0] + x[1] + x[2]) / 3 + room.patches.origin;
+    if (c.z > 1e-6) continue;  // the floor
+    const double from_box = std::max({1 - c.x, c.x - 1.6, 1 - c.y, c.y - 1.7});
+    const double longest = mesh.edge_length(leaf, mesh[leaf].edge);
+    if (from_box > 0 && from_box < 0.2) near_box += longest, ++near_count;
+    if (c.x > 3) far += longest, ++far_count;
+  }
+  ASSERT_GT(near_count, 0);
+  ASSERT_GT(far_count, 0);
+  EXPECT_LT(near_box / near_count, 0.5 * far / far_count);
+}
+
+TEST(GatherField, ATighterToleranceInterpolatesBetter) {
+  // Against the same gather at the middle of each leaf: only interpolation differs.
+  const MeshedRoom room(testing::room_with_box(), 0.6);
+  const Field B = emission(room.patches);
+  double before = 1;
+  for (const double tolerance : {0.2, 0.05, 0.02}) {
+    ElementMesh mesh(room.patches, room.map);
+    const VertexField field =
+        gather_field(room.problem(), B, mesh, {.tolerance = tolerance, .shortest_edge = 0.04, .quality = kFew});
+    const Problem problem = room.problem();
+    const Illumination light(problem, B);
+    const GatherPattern pattern(kFew, 1);
+    double squares = 0, mean = 0, area = 0;
+    for (const std::uint32_t leaf : mesh.leaves()) {
+      const auto& e = mesh[leaf];
+      const auto x = mesh.corner_positions(leaf);
+      const Vec3 n = room.patches.normal[e.patch];
+      unsigned long long rays = 0;
+      const double E =
+          gather_point(light, (x[0] + x[1] + x[2]) / 3 + n * room.rays.lift(), n, pattern, RayShares{}, rays).E[0];
+      const double linear = (field.E[e.point[0]][0] + field.E[e.point[1]][0] + field.E[e.point[2]][0]) / 3;
+      const double a = std::ldexp(room.patches.area[e.patch], -e.level);
+      squares += a * (linear - E) * (linear - E), mean += a * E, area += a;
+    }
+    const double error = std::sqrt(squares / area) / (mean / area);
+    EXPECT_LT(error, 0.7 * before) << tolerance;
+    before = error;
+  }
+  EXPECT_LT(before, 0.02);
+}
+
+TEST(GatherField, IsTheSameForOneAndTwoThreads) {
+  const MeshedRoom room(testing::room_with_box(), 0.6);
+  std::vector<double> E[2];
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    ElementMesh mesh(room.patches, room.map);
+    E[threads - 1] = gather_field(room.problem(), emission(room.patches), mesh,
+                                  {.tolerance = 0.1, .shortest_edge = 0.1, .quality = kFew})
+                         .E.value;
+  }
+  set_thread_count(0);
+  EXPECT_EQ(E[0], E[1]);
+}
+
+TEST(GatherField, KeepsToItsNumberOfPoints) {
+  const MeshedRoom room(testing::room_with_box(), 0.6);
+  ElementMesh mesh(room.patches, room.map);
+  const std::size_t most = room.map.position.size() + 200;
+  gather_field(room.problem(), emission(room.patches), mesh,
+               {.tolerance = 0.001, .shortest_edge = 1e-3, .most_points = most, .quality = kFew});
+  // What conformity asks for comes on top: neighbours, and points of their own across creases.
+  EXPECT_LT(mesh.points().position.size(), most + 600);
+}
+
+TEST(LeafIrradiance, IsExactForQuadraticLight) {
+  const MeshedRoom room(testing::room_with_box(), 0.3);
+  const ElementMesh mesh(room.patches, room.map);
+  const auto light = [](const Vec3& x) { return 10 - x.x * x.x - 0.5 * x.y * x.y + 0.3 * x.x * x.y; };
+  Field E(room.map.position.size(), 1);
+  for (std::size_t p = 0; p < E.size(); ++p) E.set(p, Spectrum(light(room.map.position[p])));
+  const Field mean = leaf_irradiance(mesh, E);
+  // Over the ceiling as a whole; at its rim the gradient leans to one side.
+  double curved = 0, linear = 0, exact = 0;
+  for (std::size_t p = 0; p < room.patches.patch_count(); ++p) {
+    if (room.patches.normal[p].z > -0.9) continue;
+    const auto x = room.patches.corner_positions(PatchId{p});
+    const double A = room.patches.area[p];
+    curved += A * mean[p][0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      linear += A * light(x[k]) / 3;
+      exact += A * light((x[k] + x[(k + 1) % 3]) / 2) / 3;
+    }
+  }
+  EXPECT_LT(std::abs(curved - exact), 0.3 * std::abs(linear - exact));
+}
+
+}  // namespace
+}  // namespace clerestory

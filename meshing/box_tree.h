@@ -92,6 +92,10 @@ class BoxTree {
       }
     }
   }
+  /// Numbers of the boxes so that neighbours in space mostly follow each other: queries in this order find in the cache
+  /// what the last one left there.
+  const std::vector<std::uint32_t>& order() const { return order_; }
+
   template <class Found>
   void visit(const Box& near, const Found& found) const {
     visit_if([&](const Box& b) { return b.touches(near); }, found);

@@ -4,6 +4,7 @@
 #include <array>
 #include <deque>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -104,22 +105,31 @@ std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector
   std::vector<std::vector<Contact>> found((count + kGrain - 1) / kGrain);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk)
-      for (std::size_t f = chunk * kGrain; f < std::min(count, (chunk + 1) * kGrain); ++f) {
+      for (std::size_t k = chunk * kGrain; k < std::min(count, (chunk + 1) * kGrain); ++k) {
+        const std::uint32_t f = tree.order()[k];
         const auto& cf = complex.faces[f].corner;
         tree.visit(box_of(f), [&](std::uint32_t g) {
           if (g <= f || group_of[g] == group_of[f]) return;
           const auto& cg = complex.faces[g].corner;
           int shared = 0;
-          for (const std::uint32_t v : cf) shared += v == cg[0] || v == cg[1] || v == cg[2];
+          Vec3 common;
+          for (const std::uint32_t v : cf)
+            if (v == cg[0] || v == cg[1] || v == cg[2]) {
+              ++shared;
+              common = complex.vertices[v];
+            }
           if (shared >= 2) return;  // a common edge, drawn already
-          const auto c =
-              contact(complex, static_cast<std::uint32_t>(f), g, groups[group_of[f]].plane, groups[group_of[g]].plane);
-          if (c) found[chunk].push_back(*c);
+          const auto c = contact(complex, f, g, groups[group_of[f]].plane, groups[group_of[g]].plane);
+          // Most that touch do so in a common corner, which is drawn too.
+          if (c && !(shared == 1 && c->end[0] == common && c->end[1] == common)) found[chunk].push_back(*c);
         });
       }
   });
   std::vector<Contact> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  std::sort(all.begin(), all.end(), [](const Contact& x, const Contact& y) {
+    return x.face_a != y.face_a ? x.face_a < y.face_a : x.face_b < y.face_b;
+  });
   return all;
 }
 
@@ -169,21 +179,25 @@ class LineSplitter {
     const std::vector<Ends> ends = distinct_ends(drawing.lines);
     const std::size_t before = layers_.size();
     add_layer(drawing, ends, forced);
-    std::vector<std::vector<Split>> found((ends.size() + kGrain - 1) / kGrain);
-    parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t chunk = begin; chunk < end; ++chunk) {
-        const std::size_t last = std::min(ends.size(), (chunk + 1) * kGrain);
-        auto known = std::lower_bound(checked_.begin(), checked_.end(), ends[chunk * kGrain]);
-        for (std::size_t k = chunk * kGrain; k < last; ++k) {
-          while (known != checked_.end() && *known < ends[k]) ++known;
-          const bool is_checked = known != checked_.end() && *known == ends[k];
-          Stops stops = stops_on(ends[k], is_checked ? before : 0, forced);
-          if (!stops.empty()) found[chunk].push_back({ends[k], std::move(stops)});
-        }
-      }
-    });
+    // By where they start: lines that start together look together, and those nearby next.
+    std::vector<std::uint32_t> begin_at(complex_.vertices.size() + 1, 0);
+    for (const Ends& e : ends) ++begin_at[e[0] + 1];
+    std::partial_sum(begin_at.begin(), begin_at.end(), begin_at.begin());
     std::vector<Split> splits;
-    for (auto& some : found) splits.insert(splits.end(), some.begin(), some.end());
+    for (const Layer& layer : layers_) {
+      const auto& order = layer.tree.order();
+      std::vector<std::vector<Split>> found((order.size() + kGrain - 1) / kGrain);
+      parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t chunk = begin; chunk < end; ++chunk)
+          for (std::size_t k = chunk * kGrain; k < std::min(order.size(), (chunk + 1) * kGrain); ++k) {
+            const std::uint32_t v = layer.vertex[order[k]];
+            const auto fan = std::span(ends).subspan(begin_at[v], begin_at[v + 1] - begin_at[v]);
+            if (!fan.empty()) split_fan(fan, before, forced, found[chunk]);
+          }
+      });
+      for (auto& some : found) splits.insert(splits.end(), some.begin(), some.end());
+    }
+    std::sort(splits.begin(), splits.end(), [](const Split& x, const Split& y) { return x.line < y.line; });
     const auto is_split = [&](const Ends& e) {
       const auto at = std::lower_bound(splits.begin(), splits.end(), e,
                                        [](const Split& s, const Ends& value) { return s.line < value; });
@@ -236,34 +250,64 @@ class LineSplitter {
     if (!fresh.empty()) layers_.emplace_back(complex_, std::move(fresh));
   }
 
-  Stops stops_on(const Ends& ends, std::size_t first_layer, const std::map<Ends, Stops>& forced) const {
-    const Vec3 a = complex_.vertices[ends[0]], b = complex_.vertices[ends[1]];
-    const Vec3 d = b - a;
-    const double dd = dot(d, d), tolerance = complex_.line_tolerance(ends[0], ends[1]);
-    std::vector<std::pair<double, std::uint32_t>> on;
-    const auto place = [&](std::uint32_t v) { return dot(complex_.vertices[v] - a, d) / dd; };
-    Box around;  // asked first, being cheaper
-    around.add(a);
-    around.add(b);
-    for (std::size_t k = first_layer; k < layers_.size(); ++k)
-      layers_[k].tree.visit_if(
-          [&](const Box& box) { return box.touches_segment(a, b); },
+  /// Lines that start at one vertex. Those that were checked look at layers from `fresh` on only.
+  void split_fan(std::span<const Ends> fan, std::size_t fresh, const std::map<Ends, Stops>& forced,
+                 std::vector<Split>& found) const {
+    struct Ray {
+      Vec3 a, b;
+      Box around;  ///< asked first, being cheaper
+      std::size_t first_layer;
+      std::vector<std::pair<double, std::uint32_t>> on;
+    };
+    std::vector<Ray> rays(fan.size());
+    Box around;
+    std::size_t first_layer = layers_.size();
+    for (std::size_t k = 0; k < fan.size(); ++k) {
+      Ray& r = rays[k];
+      r.a = complex_.vertices[fan[k][0]], r.b = complex_.vertices[fan[k][1]];
+      r.around.add(r.a);
+      r.around.add(r.b);
+      around.add(r.around);
+      r.first_layer = std::binary_search(checked_.begin(), checked_.end(), fan[k]) ? fresh : 0;
+      first_layer = std::min(first_layer, r.first_layer);
+    }
+    for (std::size_t layer = first_layer; layer < layers_.size(); ++layer) {
+      const auto meets = [&](const Ray& r, const Box& box) {
+        return r.first_layer <= layer && box.touches(r.around) && box.touches_segment(r.a, r.b);
+      };
+      layers_[layer].tree.visit_if(
+          [&](const Box& box) {
+            return box.touches(around) && std::any_of(rays.begin(), rays.end(), [&](auto& r) { return meets(r, box); });
+          },
           [&](std::uint32_t i) {
-            const std::uint32_t v = layers_[k].vertex[i];
-            if (v == ends[0] || v == ends[1]) return;
-            const double t = place(v);
-            if (t <= 0 || t >= 1) return;
-            if (length(complex_.vertices[v] - a - d * t) <= std::min(tolerance, complex_.tolerance[v]))
-              on.push_back({t, v});
+            const std::uint32_t v = layers_[layer].vertex[i];
+            const Vec3& p = complex_.vertices[v];
+            for (std::size_t k = 0; k < fan.size(); ++k) {
+              Ray& r = rays[k];
+              if (v == fan[k][0] || v == fan[k][1] || r.first_layer > layer) continue;
+              const Vec3 d = r.b - r.a;
+              const double t = dot(p - r.a, d) / dot(d, d);
+              if (t <= 0 || t >= 1) continue;
+              const double tolerance = std::min(complex_.line_tolerance(fan[k][0], fan[k][1]), complex_.tolerance[v]);
+              if (length(p - r.a - d * t) <= tolerance) r.on.push_back({t, v});
+            }
           });
-    if (const auto it = forced.find(ends); it != forced.end())
-      for (const std::uint32_t v : it->second)
-        if (const double t = place(v); t > 0 && t < 1) on.push_back({t, v});
-    std::sort(on.begin(), on.end());
-    on.erase(std::unique(on.begin(), on.end()), on.end());
-    Stops stops;
-    for (const auto& [t, v] : on) stops.push_back(v);
-    return stops;
+    }
+    for (std::size_t k = 0; k < fan.size(); ++k) {
+      auto& on = rays[k].on;
+      if (const auto it = forced.find(fan[k]); it != forced.end())
+        for (const std::uint32_t v : it->second) {
+          const Vec3 d = rays[k].b - rays[k].a;
+          if (const double t = dot(complex_.vertices[v] - rays[k].a, d) / dot(d, d); t > 0 && t < 1)
+            on.push_back({t, v});
+        }
+      if (on.empty()) continue;
+      std::sort(on.begin(), on.end());
+      on.erase(std::unique(on.begin(), on.end()), on.end());
+      Split split{fan[k], {}};
+      for (const auto& [t, v] : on) split.stops.push_back(v);
+      found.push_back(std::move(split));
+    }
   }
 
   const FaceComplex& complex_;

@@ -1,6 +1,7 @@
 #include "meshing/planar_regions.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "meshing/cells.h"
 #include "solver/model/parallel.h"
@@ -53,29 +54,42 @@ GroupResult see(const FaceComplex& complex, const PlaneGroup& group, std::uint32
 struct Graph {
   struct Edge {
     std::uint32_t a, b;
-    std::vector<std::uint32_t> groups;
+    std::uint32_t first_use, use_count;  ///< in `uses`
     bool crosses_a_region;
   };
+  std::vector<Use> uses;
   std::vector<Edge> edges;
+  std::span<const Use> uses_of(const Edge& e) const { return std::span(uses).subspan(e.first_use, e.use_count); }
+  bool have_same_groups(const Edge& e, const Edge& f) const {
+    const auto x = uses_of(e), y = uses_of(f);
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](auto& u, auto& v) { return u.group == v.group; });
+  }
 };
 
-Graph needed_lines(std::vector<Use>& uses) {
-  std::sort(uses.begin(), uses.end(), [](const Use& x, const Use& y) {
+Graph needed_lines(std::vector<Use> all) {
+  std::sort(all.begin(), all.end(), [](const Use& x, const Use& y) {
     return std::array{x.a, x.b, x.group} < std::array{y.a, y.b, y.group};
   });
   Graph graph;
-  for (std::size_t k = 0; k < uses.size();) {
-    Graph::Edge edge{uses[k].a, uses[k].b, {}, false};
+  std::size_t kept = 0;  // uses of needed lines, one a group, move to the front
+  for (std::size_t k = 0; k < all.size();) {
+    Graph::Edge edge{all[k].a, all[k].b, static_cast<std::uint32_t>(kept), 0, false};
     bool parts = false;
-    std::size_t end = k;
-    for (; end < uses.size() && uses[end].a == edge.a && uses[end].b == edge.b; ++end) {
-      if (edge.groups.empty() || edge.groups.back() != uses[end].group) edge.groups.push_back(uses[end].group);
-      parts |= uses[end].parts;
-      edge.crosses_a_region |= !uses[end].parts;
+    for (; k < all.size() && all[k].a == edge.a && all[k].b == edge.b; ++k) {
+      parts |= all[k].parts;
+      edge.crosses_a_region |= !all[k].parts;
+      if (edge.use_count == 0 || all[kept - 1].group != all[k].group) {
+        all[kept++] = all[k];
+        ++edge.use_count;
+      }
     }
-    if (parts || edge.groups.size() > 1) graph.edges.push_back(std::move(edge));
-    k = end;
+    if (parts || edge.use_count > 1)
+      graph.edges.push_back(edge);
+    else
+      kept = edge.first_use;
   }
+  all.resize(kept);
+  graph.uses = std::move(all);
   return graph;
 }
 
@@ -86,26 +100,27 @@ double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 /// Joins edges that follow each other in a straight line and are used by the same groups.
 void straighten(const FaceComplex& complex, Graph& graph) {
-  std::vector<std::array<std::uint32_t, 2>> at;  // vertex, edge
-  for (std::uint32_t e = 0; e < graph.edges.size(); ++e) {
-    at.push_back({graph.edges[e].a, e});
-    at.push_back({graph.edges[e].b, e});
+  // Edges at each vertex.
+  std::vector<std::uint32_t> begin_at(complex.vertices.size() + 1, 0), at(2 * graph.edges.size());
+  for (const Graph::Edge& e : graph.edges) {
+    ++begin_at[e.a];
+    ++begin_at[e.b];
   }
-  std::sort(at.begin(), at.end());
-  const auto range = [&](std::uint32_t v) {
-    return std::pair(std::lower_bound(at.begin(), at.end(), std::array{v, 0u}),
-                     std::lower_bound(at.begin(), at.end(), std::array{v + 1, 0u}));
-  };
+  std::partial_sum(begin_at.begin(), begin_at.end(), begin_at.begin());
+  for (std::uint32_t e = static_cast<std::uint32_t>(graph.edges.size()); e-- > 0;) {
+    at[--begin_at[graph.edges[e].a]] = e;
+    at[--begin_at[graph.edges[e].b]] = e;
+  }
   const auto other_end = [&](std::uint32_t e, std::uint32_t v) {
     return graph.edges[e].a == v ? graph.edges[e].b : graph.edges[e].a;
   };
   /// The edge that goes on straight after e at v, or none.
   constexpr std::uint32_t kStop = 0xffffffff;
   const auto next = [&](std::uint32_t e, std::uint32_t v) -> std::uint32_t {
-    const auto [begin, end] = range(v);
-    if (end - begin != 2) return kStop;
-    const std::uint32_t n = (*begin)[1] == e ? (*(begin + 1))[1] : (*begin)[1];
-    if (graph.edges[n].groups != graph.edges[e].groups) return kStop;
+    const std::uint32_t begin = begin_at[v];
+    if (begin_at[v + 1] - begin != 2) return kStop;
+    const std::uint32_t n = at[begin] == e ? at[begin + 1] : at[begin];
+    if (!graph.have_same_groups(graph.edges[n], graph.edges[e])) return kStop;
     const Vec3 a = complex.vertices[other_end(e, v)], b = complex.vertices[v], c = complex.vertices[other_end(n, v)];
     if (dot(b - a, c - b) <= 0) return kStop;
     const double tolerance =
@@ -115,12 +130,15 @@ void straighten(const FaceComplex& complex, Graph& graph) {
 
   std::vector<bool> done(graph.edges.size());
   std::vector<Graph::Edge> joined;
+  joined.reserve(graph.edges.size());
+  std::vector<std::uint32_t> passed;
   const auto walk = [&](std::uint32_t e, std::uint32_t from) {
     std::uint32_t start = from, v = other_end(e, from);
-    std::vector<std::uint32_t> passed;
+    passed.clear();
     Graph::Edge edge = graph.edges[e];
     const auto finish = [&](std::uint32_t end) {
-      joined.push_back({std::min(start, end), std::max(start, end), edge.groups, edge.crosses_a_region});
+      joined.push_back(
+          {std::min(start, end), std::max(start, end), edge.first_use, edge.use_count, edge.crosses_a_region});
       start = end;
       passed.clear();
     };
@@ -164,23 +182,36 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
     std::vector<std::size_t> begin_of(groups.size() + 1, drawing.lines.size());
     for (std::size_t k = drawing.lines.size(); k-- > 0;) begin_of[drawing.lines[k].group] = k;
     for (std::size_t g = groups.size(); g-- > 0;) begin_of[g] = std::min(begin_of[g], begin_of[g + 1]);
-    std::vector<GroupResult> seen(groups.size());
-    parallel_for(groups.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t g = begin; g < end; ++g)
-        seen[g] = see(complex, groups[g], static_cast<std::uint32_t>(g), materials,
-                      std::span(drawing.lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]));
-    });
+    constexpr std::size_t kGrain = 64;
+    std::vector<std::vector<GroupResult>> seen((groups.size() + kGrain - 1) / kGrain);
     uses.clear();
+    uses.reserve(drawing.lines.size());
     bool crossed = false;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      const auto base = static_cast<std::uint32_t>(complex.vertices.size());
-      for (const Point2& p : seen[g].crossings) complex.add_vertex(groups[g].plane.lift(p), complex.allowed.contact);
-      crossed |= !seen[g].crossings.empty();
-      for (Use u : seen[g].uses) {
-        if (u.a >= kCrossing) u.a = base + (u.a - kCrossing);
-        if (u.b >= kCrossing) u.b = base + (u.b - kCrossing);
-        if (u.a > u.b) std::swap(u.a, u.b);
-        uses.push_back(u);
+    // In blocks, so that what each group sees is not held for all of them at once.
+    constexpr std::size_t kBlock = 1 << 10;
+    for (std::size_t first = 0; first < seen.size(); first += kBlock) {
+      const std::size_t last = std::min(seen.size(), first + kBlock);
+      parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t chunk = first + begin; chunk < first + end; ++chunk)
+          for (std::size_t g = chunk * kGrain; g < std::min(groups.size(), (chunk + 1) * kGrain); ++g)
+            seen[chunk].push_back(see(complex, groups[g], static_cast<std::uint32_t>(g), materials,
+                                      std::span(drawing.lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g])));
+      });
+      for (std::size_t chunk = first; chunk < last; ++chunk) {
+        for (std::size_t k = 0; k < seen[chunk].size(); ++k) {
+          const GroupResult& result = seen[chunk][k];
+          const auto base = static_cast<std::uint32_t>(complex.vertices.size());
+          for (const Point2& p : result.crossings)
+            complex.add_vertex(groups[chunk * kGrain + k].plane.lift(p), complex.allowed.contact);
+          crossed |= !result.crossings.empty();
+          for (Use u : result.uses) {
+            if (u.a >= kCrossing) u.a = base + (u.a - kCrossing);
+            if (u.b >= kCrossing) u.b = base + (u.b - kCrossing);
+            if (u.a > u.b) std::swap(u.a, u.b);
+            uses.push_back(u);
+          }
+        }
+        seen[chunk] = {};
       }
     }
     if (!crossed) break;
@@ -190,15 +221,16 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
     split_at_vertices(complex, drawing);
   }
 
-  Graph graph = needed_lines(uses);
+  drawing.lines = {};
+  Graph graph = needed_lines(std::move(uses));
   straighten(complex, graph);
   std::vector<PlanarDomain> domains(groups.size());
   for (std::uint32_t g = 0; g < groups.size(); ++g) domains[g].group = g;
   std::vector<bool> used(complex.vertices.size());
   for (const Graph::Edge& e : graph.edges) {
-    for (const std::uint32_t g : e.groups) domains[g].lines.push_back({e.a, e.b});
+    for (const Use& u : graph.uses_of(e)) domains[u.group].lines.push_back({e.a, e.b});
     used[e.a] = used[e.b] = true;
-    if (e.crosses_a_region && e.groups.size() > 1) ++report.imprinted_contacts;
+    if (e.crosses_a_region && e.use_count > 1) ++report.imprinted_contacts;
   }
   for (const auto& [g, v] : drawing.points)
     if (used[v]) domains[g].points.push_back(v);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 #include "meshing/box_tree.h"
 #include "solver/model/parallel.h"
@@ -22,14 +23,20 @@ FaceShape shape_of(const FaceComplex& complex, const Face& face) {
   return {(a + b + c) / 3, normalized(n), length(n) / 2, longest, length(n) / longest};
 }
 
+/// Most that a face's normal may be off its plane's [sine]: corners' rounding turns that of a low triangle by about
+/// tolerance / height.
+double normal_slack(const FaceComplex& complex, const FaceShape& shape) {
+  const double tolerance = std::min(complex.allowed.contact, complex.allowed.local_share * shape.longest);
+  return 0.01 + 2 * tolerance / shape.height;
+}
+
 bool lies_in(const Plane& plane, const FaceComplex& complex, const Face& face, const FaceShape& shape, double drift) {
   const double tolerance = std::min(complex.allowed.contact, complex.allowed.local_share * shape.longest);
   for (const std::uint32_t v : face.corner) {
     const Vec3& p = complex.vertices[v];
     if (std::abs(plane.distance(p)) > tolerance + drift * length(p - plane.origin)) return false;
   }
-  // The corners' rounding turns the normal of a low triangle by about tolerance / height.
-  return length(cross(plane.n, shape.normal)) <= 0.01 + 2 * tolerance / shape.height;
+  return length(cross(plane.n, shape.normal)) <= normal_slack(complex, shape);
 }
 
 /// The plane nearest to the corners of some faces, by least squares weighted with their area: z = c0 + c1 x + c2 y in
@@ -62,6 +69,47 @@ Plane fit(const Plane& about, const FaceComplex& complex, const std::vector<Face
   return {centre + about.n * (z0 / (3 * weight)), frame.t, frame.b, frame.n};
 }
 
+/// For each face those whose boxes touch its own and that may lie in one plane with it.
+class Neighbours {
+ public:
+  Neighbours(const FaceComplex& complex, const std::vector<FaceShape>& shapes) : place_(shapes.size()) {
+    const std::size_t count = shapes.size();
+    const auto box_of = [&](std::uint32_t f) {
+      Box box;
+      for (const std::uint32_t v : complex.faces[f].corner) box.add(complex.vertices[v]);
+      return box.grown(std::min(complex.allowed.contact, complex.allowed.local_share * shapes[f].longest));
+    };
+    const BoxTree tree(count, box_of);
+    found_.resize((count + kGrain - 1) / kGrain);
+    parallel_for(found_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t chunk = begin; chunk < end; ++chunk)
+        for (std::size_t k = chunk * kGrain; k < std::min(count, (chunk + 1) * kGrain); ++k) {
+          const std::uint32_t f = tree.order()[k];
+          const auto first = static_cast<std::uint32_t>(found_[chunk].size());
+          const double slack = normal_slack(complex, shapes[f]);
+          tree.visit(box_of(f), [&](std::uint32_t g) {
+            if (g != f && length(cross(shapes[f].normal, shapes[g].normal)) <= slack + normal_slack(complex, shapes[g]))
+              found_[chunk].push_back(g);
+          });
+          std::sort(found_[chunk].begin() + first, found_[chunk].end());
+          place_[f] = {static_cast<std::uint32_t>(chunk), first,
+                       static_cast<std::uint32_t>(found_[chunk].size() - first)};
+        }
+    });
+  }
+  std::span<const std::uint32_t> of(std::uint32_t f) const {
+    return std::span(found_[place_[f].chunk]).subspan(place_[f].first, place_[f].count);
+  }
+
+ private:
+  static constexpr std::size_t kGrain = 1024;
+  struct Place {
+    std::uint32_t chunk, first, count;
+  };
+  std::vector<Place> place_;
+  std::vector<std::vector<std::uint32_t>> found_;
+};
+
 }  // namespace
 
 std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
@@ -70,12 +118,7 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
   parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) shapes[f] = shape_of(complex, complex.faces[f]);
   });
-  const auto box_of = [&](std::uint32_t f) {
-    Box box;
-    for (const std::uint32_t v : complex.faces[f].corner) box.add(complex.vertices[v]);
-    return box.grown(std::min(complex.allowed.contact, complex.allowed.local_share * shapes[f].longest));
-  };
-  const BoxTree tree(count, box_of);
+  const Neighbours neighbours(complex, shapes);
 
   std::vector<std::uint32_t> by_area(count);
   std::iota(by_area.begin(), by_area.end(), 0u);
@@ -89,11 +132,11 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
     std::vector<std::uint32_t> faces{seed};
     placed[seed] = true;
     for (std::size_t k = 0; k < faces.size(); ++k)
-      tree.visit(box_of(faces[k]), [&](std::uint32_t f) {
-        if (placed[f] || !lies_in(plane, complex, complex.faces[f], shapes[f], drift)) return;
+      for (const std::uint32_t f : neighbours.of(faces[k])) {
+        if (placed[f] || !lies_in(plane, complex, complex.faces[f], shapes[f], drift)) continue;
         placed[f] = true;
         faces.push_back(f);
-      });
+      }
     return faces;
   };
   for (const std::uint32_t seed : by_area) {

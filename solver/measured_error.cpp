@@ -14,71 +14,76 @@ namespace {
 
 enum StreamKind : std::uint64_t { kErrorPoints = 0x71, kErrorPaths = 0x72, kSensorPaths = 0x73 };
 
+constexpr int kFewestPaths = 64;          ///< a point, for a standard error that means something
+constexpr int kPilotPaths = 8;            ///< at each of the fewest points, to learn how long paths are
+constexpr std::size_t kFewestPoints = 8;  ///< in rooms so bright that paths hardly end
+constexpr std::size_t kMostPoints = 1 << 12;
+
 /// What a measurement may cost. Paths grow like 1 / (1 - rho): a bright room gets fewer of them, at fewer points, and a
 /// wider confidence, rather than hours.
 struct Budget {
-  std::size_t points;
-  int paths;
+  std::size_t points;  ///< before a point gets more than kFewestPaths
+  int paths;           ///< a point, before there are more points
   double rays;
 };
 
-/// More rays with every round that tightens: a small error needs a sharp measurement.
-Budget budget(const SolveOptions& options) {
-  const double more = std::pow(4.0, options.tighten);
+/// A fifth of what the result cost, from counts and not from time, so that every run measures the same.
+Budget budget(const SolveOptions& options, unsigned long long rays_spent) {
+  // More with every round that tightens: a small error needs a sharp measurement.
+  const double more = std::pow(4.0, options.tighten), share = 0.2 * static_cast<double>(rays_spent);
   switch (options.accuracy) {
     case Accuracy::draft:
-      return {std::size_t{128} << options.tighten, 512, 4e6 * more};
+      return {std::size_t{64} << options.tighten, 256, std::max(share, 6e4 * more)};
     case Accuracy::standard:
-      return {std::size_t{256} << options.tighten, 2048, 1.6e7 * more};
+      return {std::size_t{256} << options.tighten, 512, std::max(share, 3e5 * more)};
     case Accuracy::fine:
-      return {std::size_t{512} << options.tighten, 8192, 1.2e8 * more};
+      return {std::size_t{512} << options.tighten, 2048, std::max(share, 1.5e6 * more)};
   }
   return {};
 }
 
-/// One comparison: value, reference and the reference's standard error, as luminous means.
-struct Sample {
-  double x = 0, r = 0, std_error = 0;
-};
+}  // namespace
 
-MeasuredError summarise(const std::vector<Sample>& samples) {
+MeasuredError summarise(std::span<const Comparison> samples) {
   MeasuredError error;
   error.samples = samples.size();
   if (samples.empty()) return error;
   const double n = static_cast<double>(samples.size());
   double mean = 0, squares = 0, noise = 0;
-  for (const Sample& s : samples) mean += s.r / n;
+  for (const Comparison& s : samples) mean += s.r / n;
   if (!(mean > 0)) return error;
   std::vector<double> relative;
-  for (const Sample& s : samples) {
+  for (const Comparison& s : samples) {
     squares += (s.x - s.r) * (s.x - s.r) / n;
     noise += s.std_error * s.std_error / n;
-  }
-  double spread = 0;
-  for (const Sample& s : samples) {
-    const double d2 = (s.x - s.r) * (s.x - s.r) - s.std_error * s.std_error - (squares - noise);
-    spread += d2 * d2 / n;
     // Points much darker than the mean would make a share of nothing.
     relative.push_back(std::abs(s.x - s.r) / std::max(s.r, 0.05 * mean));
+  }
+  double spread = 0;
+  for (const Comparison& s : samples) {
+    const double d2 = (s.x - s.r) * (s.x - s.r) - s.std_error * s.std_error - (squares - noise);
+    spread += d2 * d2 / n;
   }
   // The reference's own noise adds to the differences; its variance is known and comes off.
   const double variance = std::max(squares - noise, 0.0);
   const double half_width = 1.96 * std::sqrt(spread / n);  // of the mean square
   error.rms_relative = std::sqrt(variance) / mean;
   error.confidence = (std::sqrt(variance + half_width) - std::sqrt(variance)) / mean;
+  // Right when errors are distributed like the noise, and too large when few large errors make up the variance. A
+  // distribution fitted to what lies behind the noise was tried: it took tails for noise and was low by a quarter.
   const auto p95 = relative.begin() + static_cast<std::ptrdiff_t>(0.95 * (n - 1));
   std::nth_element(relative.begin(), p95, relative.end());
   error.p95_relative = *p95 * (squares > 0 ? std::sqrt(variance / squares) : 1.0);
   return error;
 }
 
+namespace {
+
 /// Traces rays for references at place(i) = {p, n} of samples whose x is set, as many as the budget allows.
 template <class Place>
-MeasuredError compare(const Problem& problem, const std::vector<Sample>& samples, const Place& place, Budget spend,
+MeasuredError compare(const Problem& problem, const std::vector<Comparison>& samples, const Place& place, Budget spend,
                       std::uint64_t key, const Monitor& monitor) {
   const Illumination light(problem);
-  constexpr int kFewestPaths = 64;
-  constexpr std::size_t kFewestPoints = 8;
   const auto reference = [&](std::size_t i, std::uint64_t stream, int paths, unsigned long long& rays) {
     const auto [p, n] = place(i);
     return trace_paths_at_point(light, p, n, stream_key(stream, i), paths, rays);
@@ -87,14 +92,14 @@ MeasuredError compare(const Problem& problem, const std::vector<Sample>& samples
   unsigned long long pilot_rays = 0;
   std::size_t pilots = 0;
   for (std::size_t i = 0; i < samples.size(); i += samples.size() / kFewestPoints + 1, ++pilots)
-    reference(i, key + 1, kFewestPaths, pilot_rays);
-  const double rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(pilots * kFewestPaths);
+    reference(i, key + 1, kPilotPaths, pilot_rays);
+  const double rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(pilots * kPilotPaths);
   const double affordable = spend.rays / rays_per_path;  // paths in all
-  const double points = static_cast<double>(samples.size());
+  const double points = static_cast<double>(std::min(samples.size(), spend.points));
   const int paths = std::clamp(static_cast<int>(affordable / points), kFewestPaths, spend.paths);
   const auto count = std::min(samples.size(), std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));
 
-  std::vector<Sample> measured(count);
+  std::vector<Comparison> measured(count);
   std::vector<char> reached(count, 0);
   constexpr std::size_t kBlock = 32;
   for (std::size_t begin = 0; begin < count && !monitor.should_stop(); begin += kBlock) {
@@ -109,7 +114,7 @@ MeasuredError compare(const Problem& problem, const std::vector<Sample>& samples
       }
     });
   }
-  std::vector<Sample> complete;
+  std::vector<Comparison> complete;
   for (std::size_t k = 0; k < count; ++k)
     if (reached[k]) complete.push_back(measured[k]);
   return summarise(complete);
@@ -118,9 +123,9 @@ MeasuredError compare(const Problem& problem, const std::vector<Sample>& samples
 }  // namespace
 
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const SolveOptions& options,
-                            const Monitor& monitor) {
+                            unsigned long long rays_spent, const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  const Budget spend = budget(options);
+  const Budget spend = budget(options, rays_spent);
   std::vector<double> cumulative(patches.patch_count());
   double area = 0;
   for (std::size_t i = 0; i < cumulative.size(); ++i) cumulative[i] = area += patches.area[i];
@@ -129,11 +134,11 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
   struct Place {
     Vec3 p, n;
   };
-  std::vector<Sample> samples(spend.points);
-  std::vector<Place> places(spend.points);
+  std::vector<Comparison> samples(kMostPoints);
+  std::vector<Place> places(kMostPoints);
   RandomStream random(options.seed, kErrorPoints);
-  for (std::size_t s = 0; s < spend.points; ++s) {
-    const double at = (static_cast<double>(s) + random.uniform()) / static_cast<double>(spend.points) * area;
+  for (std::size_t s = 0; s < kMostPoints; ++s) {
+    const double at = (static_cast<double>(s) + random.uniform()) / static_cast<double>(kMostPoints) * area;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), at);
     const std::size_t i =
         std::min<std::size_t>(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
@@ -152,15 +157,15 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
 }
 
 MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,
-                                   const SolveOptions& options, const Monitor& monitor) {
-  const Budget spend = budget(options);
-  const std::size_t count = std::min(points.size(), spend.points);
+                                   const SolveOptions& options, unsigned long long rays_spent, const Monitor& monitor) {
+  const Budget spend = budget(options, rays_spent);
+  const std::size_t count = std::min(points.size(), kMostPoints);
   if (count == 0) return {};
   struct Place {
     Vec3 p, n;
   };
   const auto point_of = [&](std::size_t s) { return s * points.size() / count; };
-  std::vector<Sample> samples(count);
+  std::vector<Comparison> samples(count);
   for (std::size_t s = 0; s < count; ++s) samples[s].x = luminous_mean(E[point_of(s)]);
   return compare(
       problem, samples,

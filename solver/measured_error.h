@@ -15,13 +15,23 @@ struct MeasuredError {
   double confidence = 0;    ///< half-width of the 95 % interval of rms_relative
 };
 
-/// Compares the lightmap (linear between its points) with path tracing at random points of the surfaces.
-MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const SolveOptions& options,
-                            const Monitor& monitor = {});
+/// One comparison: value, reference and the reference's standard error (of eight replicates), as luminous means.
+struct Comparison {
+  double x = 0, r = 0, std_error = 0;
+};
+/// The noise of the references is taken out: of the mean square by its variance, of the percentile in the same
+/// proportion.
+MeasuredError summarise(std::span<const Comparison> comparisons);
 
-/// Compares sensor values with path tracing at the sensor points; at an even choice of 128 (draft) to 512 (fine) of
-/// them where there are more.
+/// Compares the lightmap (linear between its points) with path tracing at random points of the surfaces.
+///
+/// rays_spent  by the solution so far: a fifth as many go into the measurement, and never so few that it says nothing.
+MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const SolveOptions& options,
+                            unsigned long long rays_spent, const Monitor& monitor = {});
+
+/// Compares sensor values with path tracing at the sensor points; at an even choice of them where there are many.
 MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,
-                                   const SolveOptions& options, const Monitor& monitor = {});
+                                   const SolveOptions& options, unsigned long long rays_spent,
+                                   const Monitor& monitor = {});
 
 }  // namespace clerestory

@@ -41,7 +41,8 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
             const auto u = sobol4(static_cast<std::uint32_t>(k), key);
             RandomStream random(key, static_cast<std::uint64_t>(k), 1);
             const Vec3 start = point_on_triangle(corners, u[2], u[3]) + normal * lift;
-            sums[i].add(trace_path(light, start, normal, {u[0], u[1]}, random, rays[i]));
+            const PathStart first = path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), key);
+            sums[i].add(trace_path(light, start, normal, first, random, rays[i]));
           }
         }
       });

@@ -17,27 +17,46 @@ Spectrum PathSum::std_error() const {
   return e;
 }
 
-Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const std::array<double, 2>& u, RandomStream& random,
+namespace {
+
+/// A path is not ended while it carries more than this of what it started with. Measured: variance times time is least
+/// from 0.2 to 0.4, a sixth of that at 1 in a room of reflectance 0.5.
+constexpr double kSafe = 0.3;
+
+/// One shadow ray to a light chosen by u. Of light that bundle rays meet too, the share that is due to shadow rays.
+Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
+                   unsigned long long& rays) {
+  const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], false);
+  if (s.irradiance.is_black()) return Spectrum(0.0);
+  double weight = 1;
+  if (s.density > 0) {
+    const double bundle = dot(n, normalized(s.end - p)) / std::numbers::pi;
+    weight = s.density / (s.density + bundle);
+  }
+  ++rays;
+  return s.irradiance * light.problem.rays.transmittance(p, s.end) * weight;
+}
+
+}  // namespace
+
+PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, std::uint64_t key) {
+  const auto u = sobol4(k, key + 1);
+  return {direction, {u[0], u[1], u[2]}};
+}
+
+Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
                     unsigned long long& rays) {
   const Problem& problem = light.problem;
   const PatchSet& patches = problem.patches;
   Spectrum E(0.0), throughput(1.0);
-  for (bool first = true;; first = false) {
-    if (!light.lamps.empty()) {
-      const double pick = random.uniform(), a = random.uniform(), b = random.uniform();
-      const LightSample s = light.lamps.sample(p, n, pick, a, b, false);
-      if (!s.irradiance.is_black()) {
-        double weight = 1;
-        if (s.density > 0) {
-          const double bundle = dot(n, normalized(s.end - p)) / std::numbers::pi;
-          weight = s.density / (s.density + bundle);
-        }
-        E += throughput * s.irradiance * problem.rays.transmittance(p, s.end) * weight;
-        ++rays;
-      }
-    }
-    const double a = first ? u[0] : random.uniform(), b = first ? u[1] : random.uniform();
-    const Vec3 d = cosine_direction(Frame(n), a, b);
+  auto [square, choice] = start;
+  while (true) {
+    if (!light.lamps.empty()) E += throughput * one_light(light, p, n, choice, rays);
+    const double survival = std::min(1.0, throughput.max() / kSafe);
+    if (!(random.uniform() < survival)) return E;
+    throughput *= 1 / survival;
+
+    const Vec3 d = cosine_direction(Frame(n), square[0], square[1]);
     const Hit hit = problem.rays.first_hit(patches, {p, d});
     ++rays;
     throughput *= hit.transmittance;
@@ -55,12 +74,12 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const std::array<
       E += throughput * M * weight;
     }
     throughput *= patches.rho[hit.patch];
-    const double survival = std::min(1.0, throughput.max());
-    if (!(random.uniform() < survival)) return E;
-    throughput *= 1 / survival;
+    if (throughput.is_black()) return E;
     p = p + d * static_cast<double>(hit.distance);
     n = patches.normal[hit.patch];
     p += n * problem.rays.lift();
+    choice = {random.uniform(), random.uniform(), random.uniform()};
+    square = {random.uniform(), random.uniform()};
   }
 }
 
@@ -75,7 +94,7 @@ PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, cons
     for (int k = 0; k < in_each; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), replicate);
       RandomStream random(replicate, static_cast<std::uint64_t>(k));
-      sum += trace_path(light, p, n, {u[0], u[1]}, random, rays);
+      sum += trace_path(light, p, n, path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), replicate), random, rays);
     }
     replicates.add(sum / in_each);
   }

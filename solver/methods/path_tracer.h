@@ -21,14 +21,22 @@ struct PathSum {
   Spectrum std_error() const;
 };
 
+/// Numbers in [0, 1) that a path starts with, stratified over the paths by the caller.
+struct PathStart {
+  std::array<double, 2> direction;  ///< of the first ray
+  std::array<double, 3> light;      ///< choice and point of the light that shines on the first point
+};
+/// That of path k; directions are given, for callers that also spread the points.
+PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, std::uint64_t key);
+
 /// Irradiance [W/m2] at point p (lifted) with unit normal n, by one path of any length:
 ///   E(x) = lights(x) + sky + sum over bounces of the product of rho times the same at the next point
 /// A light is chosen for a shadow ray at every bounce; glowing patches are met by both ways, weighted by the balance
-/// heuristic (Veach & Guibas 1995). Russian roulette ends the path with the largest throughput, so there is no bias.
+/// heuristic (Veach & Guibas 1995). Russian roulette ends paths that carry little, so there is no bias; it comes after
+/// the shadow ray and late, because ending a path in two halves and doubling the other is most of the noise.
 ///
-/// u      first direction in u[0], u[1], stratified by the caller.
 /// rays   is raised by the rays traced.
-Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const std::array<double, 2>& u, RandomStream& random,
+Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
                     unsigned long long& rays);
 
 /// Irradiance at the fixed point p and its standard error, from independent replicates of stratified paths: the spread

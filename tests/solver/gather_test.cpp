@@ -73,8 +73,8 @@ TEST(MeasuredError, IsNothingForAnExactFieldAndFindsAFieldThatIsFivePerCentTooBr
   lightmap.E = Field(3 * patches.patch_count(), 1);
   for (const double factor : {1.0, 1.05}) {
     for (double& E : lightmap.E.value) E = 6 * factor;
-    const MeasuredError error = measure_error(problem, lightmap, {});
-    EXPECT_EQ(error.samples, 256u);
+    const MeasuredError error = measure_error(problem, lightmap, {}, 5'000'000);
+    EXPECT_GE(error.samples, 256u);
     EXPECT_NEAR(error.rms_relative, factor - 1, std::max(error.confidence, 0.005)) << factor;
     EXPECT_LT(error.confidence, 0.02);
   }

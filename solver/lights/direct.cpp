@@ -158,13 +158,14 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     for (const auto& lamp : lights.points) lamps += from_lamp(patch, lamp);
     for (const auto& lamp : lights.spots) lamps += from_lamp(patch, lamp);
     for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
-    if (!light.sky.dark()) sky += from_sky(light, i, spend);
+    if (!light.sky.dark() && spend.sky_rays > 0) sky += from_sky(light, i, spend);
     direct.E.set(i, lamps + sky);
     daylight[i] = luminous_mean(sky) * problem.patches.area[i];
   };
   if (monitor.deadline != Monitor{}.deadline) {
     // Time may run out below: no patch shall stay dark for that.
-    const DirectOptions rough{.lamp_rays = 16, .edge_rays = 16, .sky_rays = 16, .seed = options.seed};
+    const DirectOptions rough{
+        .lamp_rays = 16, .edge_rays = 16, .sky_rays = std::min(16, options.sky_rays), .seed = options.seed};
     parallel_for(n, 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) light_patch(i, rough);
     });

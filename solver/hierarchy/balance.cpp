@@ -1,0 +1,113 @@
+#include "solver/hierarchy/balance.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "solver/hierarchy/gather_links.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+constexpr int kMostSweeps = 1'000;  // safety net; reaching it sets StopReason::iteration_limit
+
+class System {
+ public:
+  System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& E_direct,
+         Field first_guess)
+      : B(std::move(first_guess)), p_(patches), tree_(tree), transport_(transport), n_(patches.patch_count()) {
+    source_ = FB = r_ = F_rho_ = Field(n_, p_.channels);
+    for (std::size_t i = 0; i < n_; ++i) {
+      source_.set(i, p_.M[i] + p_.rho[i] * E_direct[i]);
+      scale_ += p_.area[i] * (p_.M[i] + E_direct[i]);
+    }
+    if (B.size() != n_ || B.channels != p_.channels) B = source_;
+    gather(p_.rho, F_rho_);
+    ambient_loss_.resize(transport.spaces);
+    for (std::size_t i = 0; i < n_; ++i)
+      ambient_loss_[transport.space[i]] += p_.area[i] * p_.rho[i] * (Spectrum(1.0) - F_rho_[i]);
+    update();
+  }
+
+  void sweep() {
+    for (std::size_t k = 0; k < B.value.size(); ++k) B.value[k] += r_.value[k];
+    update();
+  }
+  double residual() const {
+    Spectrum left;
+    for (std::size_t i = 0; i < n_; ++i)
+      left += p_.area[i] * Spectrum(std::abs(r_[i][0]), std::abs(r_[i][1]), std::abs(r_[i][2]));
+    double worst = 0;
+    for (int c = 0; c < p_.channels; ++c)
+      if (scale_[c] > 0) worst = std::max(worst, left[c] / scale_[c]);
+    return worst;
+  }
+
+  Field B, FB;
+
+ private:
+  void gather(const Field& leaves, Field& E) {
+    pull(tree_, leaves, nodes_);
+    gather_and_push(transport_, tree_, nodes_, E);
+  }
+  void update() {
+    gather(B, FB);
+    std::vector<Spectrum> e(transport_.spaces);
+    for (std::size_t i = 0; i < n_; ++i) {
+      r_.set(i, source_[i] + p_.rho[i] * FB[i] - B[i]);
+      e[transport_.space[i]] += p_.area[i] * r_[i];
+    }
+    for (std::size_t s = 0; s < e.size(); ++s)
+      for (int c = 0; c < kMaxChannels; ++c) e[s][c] = ambient_loss_[s][c] > 0 ? e[s][c] / ambient_loss_[s][c] : 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Spectrum rho_e = p_.rho[i] * e[transport_.space[i]];
+      B.add(i, rho_e);
+      FB.add(i, e[transport_.space[i]] * F_rho_[i]);
+      r_.set(i, r_[i] - rho_e * (Spectrum(1.0) - F_rho_[i]));
+    }
+  }
+
+  const PatchSet& p_;
+  const ElementTree& tree_;
+  const Transport& transport_;
+  std::size_t n_;
+  Field source_, r_, F_rho_, nodes_;
+  Spectrum scale_;
+  std::vector<Spectrum> ambient_loss_;  ///< by space: sum A rho (1 - F rho) [m2]
+};
+
+}  // namespace
+
+Solution balance(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& E_direct,
+                 Field B, double residual, const Monitor& monitor) {
+  Solution s;
+  System system(patches, tree, transport, E_direct, std::move(B));
+  const auto log = [&] {
+    char line[80];
+    std::snprintf(line, sizeof line, "sweep %ld, residual %.2g", s.iterations, s.residual);
+    s.log.push_back(line);
+  };
+  for (s.residual = system.residual(); s.residual > residual; s.residual = system.residual()) {
+    if (s.iterations == kMostSweeps) s.stop = StopReason::iteration_limit;
+    if (monitor.should_stop()) s.stop = why_stopped(monitor);
+    if (s.stop != StopReason::converged) break;
+    system.sweep();
+    ++s.iterations;
+  }
+  log();
+
+  const std::size_t n = patches.patch_count();
+  s.E = s.B = Field(n, patches.channels);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Spectrum E = E_direct[i] + system.FB[i], radiosity = patches.M[i] + patches.rho[i] * E;
+    s.E.set(i, E);
+    s.B.set(i, radiosity);
+    const double arrives = double{transport.arrives[i]}, escapes = double{transport.escapes[i]};
+    s.energy.absorbed += patches.area[i] * luminous_mean((Spectrum(1.0) - patches.rho[i]) * E +
+                                                         radiosity * std::max(0.0, 1 - arrives - escapes));
+    s.energy.escaped += patches.area[i] * luminous_mean(radiosity) * escapes;
+  }
+  return s;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,89 @@
+#include "solver/hierarchy/gather_links.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solver/model/parallel.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+template <std::size_t C>
+void gather_block(const LinkBlock& block, const ElementTree& tree, const double* nodes, double* E) {
+  for (std::uint32_t l = block.first_leaf; l < block.leaf_end; ++l) std::fill_n(E + C * tree.patch[l], C, 0.0);
+  std::size_t link = 0, row = 0;
+  const float* share = block.shares.data();
+  for (const Receiver& r : block.receivers)
+    for (std::uint32_t k = 0; k < r.rows; ++k, ++row) {
+      std::array<double, C> sum{};
+      for (const std::size_t last = block.row_end[row]; link < last; ++link) {
+        const auto [source, weight] = block.links[link];
+        for (std::size_t c = 0; c < C; ++c) sum[c] += double{weight} * nodes[C * source + c];
+      }
+      for (std::uint32_t l = r.first_leaf; l < r.leaf_end; ++l) {
+        const double part = r.hands_down ? double{*share++} : 1.0;
+        for (std::size_t c = 0; c < C; ++c) E[C * tree.patch[l] + c] += part * sum[c];
+      }
+    }
+}
+
+}  // namespace
+
+void pull(const ElementTree& tree, const Field& leaves, Field& nodes) {
+  const auto C = static_cast<std::size_t>(leaves.channels);
+  const std::size_t n = tree.size();
+  if (nodes.value.size() != n * C) nodes = Field(n, leaves.channels);
+  std::fill(nodes.value.begin(), nodes.value.end(), 0.0);
+  for (std::size_t v = n; v-- > 0;) {  // children before their parents
+    const bool leaf = tree.is_leaf(static_cast<std::uint32_t>(v));
+    double* value = nodes.value.data() + C * v;
+    if (leaf) {
+      const double* from = leaves.value.data() + C * tree.patch[tree.leaf_begin[v]];
+      for (std::size_t c = 0; c < C; ++c) value[c] = from[c];
+    } else {
+      for (std::size_t c = 0; c < C; ++c) value[c] /= tree.area[v];
+    }
+    if (tree.parent[v] == ElementTree::kNone) continue;
+    double* above = nodes.value.data() + C * tree.parent[v];
+    for (std::size_t c = 0; c < C; ++c) above[c] += tree.area[v] * value[c];
+  }
+}
+
+void gather_and_push(const Transport& transport, const ElementTree& tree, const Field& nodes, Field& E) {
+  parallel_for(transport.blocks.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      if (nodes.channels == 1)
+        gather_block<1>(transport.blocks[b], tree, nodes.value.data(), E.value.data());
+      else
+        gather_block<3>(transport.blocks[b], tree, nodes.value.data(), E.value.data());
+    }
+  });
+}
+
+NodeLight node_light(const ElementTree& tree, const Field& B) {
+  Field mean;
+  pull(tree, B, mean);
+  const std::size_t n = tree.size();
+  Field variance(n, B.channels);
+  for (std::size_t v = n; v-- > 0;) {
+    const std::size_t above = tree.parent[v];
+    for (int c = 0; c < B.channels; ++c) {
+      double& own = variance.at(v, c);
+      if (!tree.is_leaf(static_cast<std::uint32_t>(v))) own /= tree.area[v];
+      if (above == ElementTree::kNone) continue;
+      const double apart = mean.at(v, c) - mean.at(above, c);
+      variance.at(above, c) += tree.area[v] * (own + apart * apart);
+    }
+  }
+  NodeLight light;
+  light.mean.resize(n), light.deviation.resize(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    light.mean[v] = static_cast<float>(luminous_mean(mean[v]));
+    light.deviation[v] = static_cast<float>(std::sqrt(variance[v].max()));
+  }
+  return light;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,215 @@
+#include "solver/hierarchy/refine.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/sampling.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::uint64_t kProbe = 0xa1;
+constexpr std::size_t kParts = 4;
+constexpr int kDirections = 16, kPairs = 16, kPoints = 8;
+constexpr int kMostHalvings = 4;  // of an element in one call
+constexpr double kSigmas = 3, kFewestPatches = 2000, kDark = 0.25;
+
+/// Values of the same sample in each part, summed so that differences of parts and their errors follow.
+struct Paired {
+  std::array<double, kParts> sum{};
+  std::array<std::array<double, kParts>, kParts> square{};  ///< sum of (value_s - value_t)^2
+  int count = 0;
+
+  void add(const std::array<double, kParts>& x) {
+    ++count;
+    for (std::size_t s = 0; s < kParts; ++s) {
+      sum[s] += x[s];
+      for (std::size_t t = s + 1; t < kParts; ++t) square[s][t] += (x[s] - x[t]) * (x[s] - x[t]);
+    }
+  }
+  double mean(std::size_t s) const { return sum[s] / count; }
+  /// Of mean(s) - mean(t).
+  double variance(std::size_t s, std::size_t t) const {
+    const double d = (sum[s] - sum[t]) / count;
+    return std::max(0.0, square[s][t] / count - d * d) / (count - 1);
+  }
+};
+
+std::array<std::array<Vec3, 3>, kParts> parts_of(const std::array<Vec3, 3>& c) {
+  const Vec3 ab = (c[0] + c[1]) / 2, bc = (c[1] + c[2]) / 2, ca = (c[2] + c[0]) / 2;
+  return {{{c[0], ab, ca}, {c[1], bc, ab}, {c[2], ca, bc}, {ab, bc, ca}}};
+}
+
+}  // namespace
+
+Variation irradiance_variation(const Illumination& light, const Field& B, const std::array<Vec3, 3>& corners,
+                               const Vec3& normal, std::uint64_t key, unsigned long long& rays) {
+  const Problem& problem = light.problem;
+  const PatchSet& patches = problem.patches;
+  const auto parts = parts_of(corners);
+  const Vec3 lift = normal * problem.rays.lift();
+  const Frame frame(normal);
+  const int pairs = light.lamps.has_emitters() ? kPairs : 0;
+
+  Paired bundle;
+  std::array<double, kParts> value;
+  for (int k = 0; k < kDirections; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+    const Vec3 d = cosine_direction(frame, u[0], u[1]);
+    for (std::size_t s = 0; s < kParts; ++s) {
+      const Vec3 x = point_on_triangle(parts[s], u[2], u[3]) + lift;
+      const Hit hit = problem.rays.first_hit(patches, {x, d});
+      value[s] = 0;
+      if (hit.escaped()) value[s] = std::numbers::pi * luminous_mean(light.sky(d) * hit.transmittance);
+      if (!hit.patch.valid()) continue;
+      double weight = 1;
+      if (pairs > 0 && light.lamps.is_explicit(hit.patch)) {
+        const double cos_p = kDirections * dot(normal, d) / std::numbers::pi;
+        const double cos_q = -dot(patches.normal[hit.patch], d);
+        weight = cos_p / (cos_p + pairs * light.lamps.density(hit.patch, x, normal, hit.distance, cos_q, true));
+      }
+      value[s] = weight * luminous_mean(B[hit.patch] * hit.transmittance);
+    }
+    bundle.add(value);
+  }
+  rays += kDirections * kParts;
+
+  Paired lamps;
+  if (pairs > 0) {
+    std::array<std::array<double, kParts>, kPairs> found{};
+    const std::uint64_t pick = mix_bits(key), place = mix_bits(pick);
+    for (std::size_t s = 0; s < kParts; ++s) {
+      SegmentPacket segments;
+      std::array<Vec3, kPairs> from, to;
+      unsigned active = 0;
+      for (int lane = 0; lane < kPairs; ++lane) {
+        const auto k = static_cast<std::size_t>(lane);
+        const auto u = sobol4(static_cast<std::uint32_t>(lane), pick);
+        const auto v = sobol4(static_cast<std::uint32_t>(lane), place);
+        from[k] = point_on_triangle(parts[s], v[0], v[1]) + lift;
+        const LightSample sample = light.lamps.sample(from[k], normal, u[0], u[1], u[2], true);
+        to[k] = sample.density > 0 ? sample.end : from[k];
+        segments.set(lane, from[k], to[k]);
+        if (!(sample.density > 0)) continue;
+        const double cos_p = std::max(0.0, dot(normal, normalized(to[k] - from[k]))) / std::numbers::pi;
+        found[k][s] = pairs * luminous_mean(B[sample.patch]) * cos_p / (kDirections * cos_p + pairs * sample.density);
+        if (found[k][s] > 0) active |= 1u << lane;
+      }
+      const unsigned seen = active ? problem.rays.visible16(segments, static_cast<std::uint16_t>(active)) : 0;
+      for (std::size_t k = 0; k < kPairs; ++k) {
+        if (!(seen >> k & 1u))
+          found[k][s] = 0;
+        else if (problem.rays.has_glass())
+          found[k][s] *= luminous_mean(problem.rays.glass_transmittance(from[k], to[k]));
+      }
+    }
+    for (const auto& x : found) lamps.add(x);
+    rays += kPairs * kParts;
+  }
+
+  Paired small;
+  if (!problem.lights.empty()) {
+    const std::uint64_t place = mix_bits(key + 1);
+    for (int k = 0; k < kPoints; ++k) {
+      const auto v = sobol4(static_cast<std::uint32_t>(k), place);
+      for (std::size_t s = 0; s < kParts; ++s)
+        value[s] = luminous_mean(light.lamps.small_lights(point_on_triangle(parts[s], v[0], v[1]) + lift, normal, 1,
+                                                          mix_bits(place + static_cast<std::uint64_t>(k))));
+      small.add(value);
+    }
+    rays += kPoints * kParts;
+  }
+
+  Variation result;
+  std::array<double, kParts> E{};
+  for (std::size_t s = 0; s < kParts; ++s)
+    for (const Paired* p : {&bundle, &lamps, &small})
+      if (p->count > 0) E[s] += p->mean(s);
+  for (std::size_t s = 0; s < kParts; ++s) {
+    result.E += E[s] / kParts;
+    for (std::size_t t = s + 1; t < kParts; ++t) {
+      double variance = 0;
+      for (const Paired* p : {&bundle, &lamps, &small})
+        if (p->count > 0) variance += p->variance(s, t);
+      result.difference = std::max(result.difference, std::abs(E[s] - E[t]) - kSigmas * std::sqrt(variance));
+    }
+  }
+  return result;
+}
+
+namespace {
+
+double area_median(const PatchSet& patches, const Field& E) {
+  std::vector<std::pair<double, double>> by_light;
+  double half = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    by_light.emplace_back(luminous_mean(E[i]), patches.area[i]);
+    half += patches.area[i] / 2;
+  }
+  std::sort(by_light.begin(), by_light.end());
+  for (const auto& [value, area] : by_light)
+    if ((half -= area) <= 0) return value;
+  return 0;
+}
+
+double triangle_area(const std::array<Vec3, 3>& c) { return length(cross(c[1] - c[0], c[2] - c[0])) / 2; }
+
+}  // namespace
+
+std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E, const Field& B,
+                   const RefineOptions& options, unsigned long long& rays, const Monitor& monitor) {
+  const PatchSet& patches = mesh.patches();
+  const double total = patches.total_area();
+  const double A0 = total / std::max(kFewestPatches, static_cast<double>(patches.patch_count()));
+  const double dark = kDark * area_median(light.problem.patches, E);
+  std::vector<std::uint32_t> candidates = mesh.leaves(), marked;
+  std::size_t halved = 0;
+  for (int pass = 0; pass < kMostHalvings && !candidates.empty() && !monitor.should_stop(); ++pass) {
+    std::vector<float> stake(candidates.size(), 0.0f);
+    std::vector<unsigned long long> spent(candidates.size(), 0);
+    parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::uint32_t e = candidates[k];
+        const PatchId p{std::size_t{mesh[e].patch}};
+        const double edge = mesh.edge_length(e, mesh[e].edge);
+        const auto corners = mesh.corner_positions(e);
+        const double weight = luminous_mean(patches.rho[p]) * triangle_area(corners) / A0;
+        // Nothing varies by more than four times its mean between four parts.
+        if (edge < 2 * options.shortest_edge || 4 * weight < options.tolerance / 2) continue;
+        const Variation v =
+            irradiance_variation(light, B, corners, patches.normal[p], stream_key(options.seed, kProbe, e), spent[k]);
+        if (v.difference > options.tolerance * v.E &&
+            weight * v.difference > options.tolerance / 2 * std::max(v.E, dark))
+          stake[k] = static_cast<float>(weight * v.difference);
+      }
+    });
+    for (const auto r : spent) rays += r;
+    marked.clear();
+    std::vector<std::pair<float, std::uint32_t>> by_stake;
+    for (std::size_t k = 0; k < candidates.size(); ++k)
+      if (stake[k] > 0) by_stake.emplace_back(-stake[k], candidates[k]);
+    // An element brings its neighbour with it, and a few more.
+    const std::size_t room = options.most_elements > mesh.leaf_count() ? options.most_elements - mesh.leaf_count() : 0;
+    if (by_stake.size() > room / 4) {
+      std::sort(by_stake.begin(), by_stake.end());
+      by_stake.resize(room / 4);
+    }
+    for (const auto& [s, e] : by_stake) marked.push_back(e);
+    if (marked.empty()) break;
+    halved += marked.size();
+    const std::size_t before = mesh.size();
+    mesh.split(marked);
+    candidates.clear();
+    for (std::size_t e = before; e < mesh.size(); ++e)
+      if (mesh[e].is_leaf()) candidates.push_back(static_cast<std::uint32_t>(e));
+  }
+  return halved;
+}
+
+}  // namespace clerestory

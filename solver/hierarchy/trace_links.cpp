@@ -1,0 +1,457 @@
+#include "solver/hierarchy/trace_links.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "solver/hierarchy/build_tree.h"
+#include "solver/hierarchy/gather_links.h"
+#include "solver/model/disjoint_sets.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/sampling.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92;
+constexpr double kMostOwed = 0.1;  // of the limit for one link: a row may not drift by more while it is cut
+constexpr std::uint32_t kMostMembers = 32;
+constexpr std::size_t kParts = 32;  // of the sphere
+constexpr std::size_t kReceiversInBlock = 64;
+constexpr std::size_t kNeighbours = 8;  // hits of a receiver that tell which space it is in
+
+/// Whether v is a cluster of few patches, none of which was worth halving.
+bool is_small(const ElementTree& tree, std::uint32_t v) {
+  if (tree.leaf_end(v) - tree.first_leaf(v) > kMostMembers) return false;
+  for (std::uint32_t below = v; below < tree.end[v]; ++below)
+    if (!tree.is_leaf(below) && !tree.cluster[below]) return false;
+  return true;
+}
+
+/// Receivers in tree order: small clusters, and the leaves outside of them.
+std::vector<Receiver> choose_receivers(const ElementTree& tree, const PatchSet& patches, double diameter) {
+  std::vector<Receiver> receivers;
+  std::vector<Sphere> spheres;
+  if (diameter > 0) spheres = bounding_spheres(tree, patches);
+  for (std::uint32_t v = 0; v < tree.size();) {
+    const std::uint32_t first = tree.first_leaf(v), last = tree.leaf_end(v);
+    const bool leaf = tree.is_leaf(v);
+    if (leaf || (diameter > 0 && 2 * spheres[v].radius <= diameter && is_small(tree, v))) {
+      receivers.push_back({first, last, 1, !leaf});
+      v = tree.end[v];
+    } else {
+      ++v;
+    }
+  }
+  return receivers;
+}
+
+/// Parts of the sphere that a cluster tells apart: 4 zones of equal height, 8 sectors.
+std::uint16_t part_of_sphere(const Vec3& d) {
+  const double turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
+  const int zone = std::clamp(static_cast<int>((d.z + 1) * 2), 0, 3), sector = static_cast<int>(turn * 8) & 7;
+  return static_cast<std::uint16_t>(zone * 8 + sector);
+}
+
+/// Points of a bundle, of place and direction: a net in four dimensions, made once. Each receiver shifts it by its own
+/// random digits, which keeps its strata. Points are in the order of 2 x 2, 4 x 4, ... cells of direction; the shift
+/// only swaps cells, so sixteen in a row still go about the same way.
+class Net {
+ public:
+  explicit Net(int count, std::uint64_t seed) {
+    for (int k = 0; k < count; ++k) {
+      const auto u = sobol4(static_cast<std::uint32_t>(k), seed);
+      Point& x = points_.emplace_back();
+      for (std::size_t d = 0; d < 4; ++d) x[d] = static_cast<std::uint32_t>(u[d] * 0x1p32);
+    }
+    std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return cell(a) < cell(b); });
+  }
+  std::array<double, 4> operator()(std::size_t k, std::uint64_t key) const {
+    const std::uint64_t a = mix_bits(key), b = mix_bits(key + 0x9e3779b97f4a7c15ULL);
+    const Point& x = points_[k];
+    return {unit(x[0] ^ low(a)), unit(x[1] ^ high(a)), unit(x[2] ^ low(b)), unit(x[3] ^ high(b))};
+  }
+
+ private:
+  using Point = std::array<std::uint32_t, 4>;
+  static constexpr std::uint32_t low(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
+  static constexpr std::uint32_t high(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
+  static constexpr double unit(std::uint32_t x) { return static_cast<double>(x) * 0x1p-32; }
+  static std::uint64_t cell(const Point& x) {
+    std::uint64_t code = 0;
+    for (int bit = 31; bit >= 0; --bit) code = code << 2 | (x[0] >> bit & 1u) << 1 | (x[1] >> bit & 1u);
+    return code;
+  }
+  std::vector<Point> points_;
+};
+
+/// Light on its way into a receiver.
+struct Arrival {
+  std::uint32_t node;  ///< leaf of the tree
+  float weight;
+  std::uint16_t part;  ///< of the sphere; 0 for surfaces
+  bool bright;
+};
+
+/// Weight of a ray of one estimator that might have been one of the other's, from the densities of both (rays per solid
+/// angle): the power heuristic with exponent 2.
+double shared_weight(double cos_p, double own, double other) {
+  const double squares = own * own + other * other;
+  return squares > 0 ? cos_p * own / squares : 0;
+}
+
+/// One receiver after another; holds the memory they need in turn.
+class Tracer {
+ public:
+  Tracer(const Illumination& light, const ElementTree& tree, const Net& net, const NodeLight* nodes, const Field& E,
+         const LinkOptions& options)
+      : light_(light),
+        tree_(tree),
+        net_(net),
+        nodes_(nodes),
+        E_(E),
+        options_(options),
+        patches_(light.problem.patches),
+        rays_(static_cast<std::size_t>(options.bundle_rays)),
+        hits_(rays_.size()),
+        from_(rays_.size()) {}
+
+  void add(const Receiver& receiver, LinkBlock& out, Transport& transport, std::span<std::uint32_t> neighbours) {
+    look_at(receiver);
+    send_bundle(transport, neighbours);
+    if (light_.lamps.has_emitters() && options_.lamp_rays > 0) send_pairs();
+    fill_row();
+    write(receiver, out);
+  }
+
+ private:
+  struct Member {
+    std::uint32_t patch;
+    std::array<Vec3, 3> corners;
+    Vec3 normal;
+    double area, cumulative;
+  };
+
+  void look_at(const Receiver& receiver) {
+    members_.clear();
+    double sum = 0;
+    for (std::uint32_t l = receiver.first_leaf; l < receiver.leaf_end; ++l) {
+      const PatchId p{std::size_t{tree_.patch[l]}};
+      sum += patches_.area[p];
+      members_.push_back({p.value, patches_.corner_positions(p), patches_.normal[p], patches_.area[p], sum});
+    }
+    area_ = sum;
+    key_ = stream_key(options_.seed, kBundle, members_[0].patch);
+    hands_down_ = receiver.hands_down;
+    arrivals_.clear();
+    bright_ = others_ = arriving_ = 0;
+    if (hands_down_) shares_ = {}, part_weight_ = {};
+  }
+
+  /// The member at the share x of the area; x becomes the place within it, uniform again.
+  const Member& pick(double& x) const {
+    if (members_.size() == 1) return members_[0];
+    const double at = x * area_;
+    const auto m = std::upper_bound(members_.begin(), members_.end() - 1, at,
+                                    [](double a, const Member& member) { return a < member.cumulative; });
+    x = std::clamp((at - (m->cumulative - m->area)) / m->area, 0.0, 1 - 1e-12);
+    return *m;
+  }
+
+  /// What member m gets of light from d, against an even share by area: cos_m sum a / sum a cos.
+  void find_shares(const Vec3& d, std::span<double> share) const {
+    double sum = 0;
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      share[m] = std::max(0.0, dot(members_[m].normal, d));
+      sum += members_[m].area * share[m];
+    }
+    for (double& s : share) s = sum > 0 ? s * area_ / sum : 1;
+  }
+
+  std::uint16_t part(const Vec3& d) const { return hands_down_ ? part_of_sphere(d) : std::uint16_t{0}; }
+
+  void send_bundle(Transport& transport, std::span<std::uint32_t> neighbours) {
+    const Problem& problem = light_.problem;
+    const int R = options_.bundle_rays;
+    const bool pairs = light_.lamps.has_emitters() && options_.lamp_rays > 0;
+    const std::size_t n = members_.size();
+    std::array<double, kMostMembers> share{}, all{}, arrive{}, escape{};
+    std::array<Spectrum, kMostMembers> sky{};
+    share[0] = 1;
+    std::size_t met = 0;
+    const Frame frame(members_[0].normal);
+    for (std::size_t k = 0; k < rays_.size(); ++k) {
+      auto u = net_(k, key_);
+      from_[k] = &pick(u[2]);
+      const Vec3 normal = from_[k]->normal;
+      rays_[k] = {point_on_triangle(from_[k]->corners, u[2], u[3]) + normal * problem.rays.lift(),
+                  cosine_direction(n > 1 ? Frame(normal) : frame, u[0], u[1])};
+    }
+    problem.rays.first_hits(patches_, rays_, hits_);
+    for (std::size_t k = 0; k < rays_.size(); ++k) {
+      const Hit& hit = hits_[k];
+      const Member& from = *from_[k];
+      const auto& [x, d] = rays_[k];
+      const double passes = luminous_mean(hit.transmittance);
+      if (n > 1) find_shares(d, std::span(share).first(n));
+      if (hit.escaped()) {
+        const Spectrum from_sky = light_.sky(d) * std::numbers::pi * hit.transmittance;
+        for (std::size_t m = 0; m < n; ++m) sky[m] += from_sky * share[m], escape[m] += share[m] * passes;
+      } else if (hit.patch.valid()) {
+        if (met < neighbours.size()) neighbours[met++] = hit.patch.value;
+        const bool bright = pairs && light_.lamps.is_explicit(hit.patch);
+        double weight = 1.0 / R;
+        if (bright) {
+          const double cos_p = dot(from.normal, d) / std::numbers::pi;
+          const double cos_q = -dot(patches_.normal[hit.patch], d);
+          const double density = light_.lamps.density(hit.patch, x, from.normal, hit.distance, cos_q, true);
+          weight = shared_weight(cos_p, R * cos_p, options_.lamp_rays * density);
+        }
+        arriving_ += passes / R;
+        add_arrival(hit.patch, weight * passes, bright, d);
+        for (std::size_t m = 0; m < n; ++m) arrive[m] += share[m] * passes;
+      }
+      for (std::size_t m = 0; m < n; ++m) all[m] += share[m];
+    }
+    sky_mean_ = 0;
+    for (std::size_t m = 0; m < n; ++m) {
+      const std::uint32_t p = members_[m].patch;
+      transport.E_sky.set(p, sky[m] / R);
+      transport.arrives[p] = static_cast<float>(all[m] > 0 ? arrive[m] / all[m] : 0);
+      transport.escapes[p] = static_cast<float>(all[m] > 0 ? escape[m] / all[m] : 0);
+      sky_mean_ += members_[m].area / area_ * luminous_mean(sky[m] / R);
+    }
+  }
+
+  void send_pairs() {
+    const Problem& problem = light_.problem;
+    const std::uint64_t key = mix_bits(key_ + kLampPairs), key_of_rest = mix_bits(key);
+    for (int first = 0; first < options_.lamp_rays; first += 16) {
+      SegmentPacket segments;
+      std::array<Vec3, 16> from, to, direction;
+      std::array<double, 16> weight{};
+      std::array<PatchId, 16> source;
+      unsigned active = 0;
+      for (int lane = 0; lane < 16; ++lane) {
+        const auto k = static_cast<std::size_t>(lane);
+        const auto ray = static_cast<std::uint32_t>(first + lane);
+        // Place and choice of the source matter most: they share one sequence, and are stratified against each other.
+        const auto u = sobol4(ray, key);
+        auto v = sobol4(ray, key_of_rest);
+        const Member& member = pick(v[1]);
+        from[k] = point_on_triangle(member.corners, u[0], u[1]) + member.normal * problem.rays.lift();
+        const LightSample s = light_.lamps.sample(from[k], member.normal, u[2], u[3], v[0], true);
+        to[k] = s.density > 0 ? s.end : from[k];
+        segments.set(lane, from[k], to[k]);
+        if (!(s.density > 0)) continue;
+        direction[k] = normalized(to[k] - from[k]);
+        const double cos_p = std::max(0.0, dot(member.normal, direction[k])) / std::numbers::pi;
+        weight[k] = shared_weight(cos_p, options_.lamp_rays * s.density, options_.bundle_rays * cos_p);
+        source[k] = s.patch;
+        if (weight[k] > 0) active |= 1u << lane;
+      }
+      if (!active) continue;
+      for (unsigned seen = problem.rays.visible16(segments, static_cast<std::uint16_t>(active)); seen;
+           seen &= seen - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(seen));
+        const double passes = luminous_mean(problem.rays.glass_transmittance(from[k], to[k]));
+        add_arrival(source[k], weight[k] * passes, true, direction[k]);
+      }
+    }
+  }
+
+  void add_arrival(PatchId source, double weight, bool bright, const Vec3& d) {
+    (bright ? bright_ : others_) += weight;
+    const std::uint16_t where = part(d);
+    arrivals_.push_back({tree_.node_of_patch[source], static_cast<float>(weight), where, bright});
+    if (hands_down_) add_shares(where, weight, d);
+  }
+
+  /// Pairs do not know what the bundle found: together they may see a little more or less than all.
+  void fill_row() {
+    if (!(bright_ > 0)) return;
+    const double left = arriving_ - bright_;
+    const bool room_for_others = others_ > 0 && left > 0;
+    const double gain = room_for_others ? left / others_ : arriving_ / (bright_ + others_);
+    for (Arrival& a : arrivals_)
+      if (!a.bright || !room_for_others) a.weight = static_cast<float>(a.weight * gain);
+  }
+
+  void write(const Receiver& receiver, LinkBlock& out) {
+    std::sort(arrivals_.begin(), arrivals_.end(), [](const Arrival& a, const Arrival& b) {
+      return a.part < b.part || (a.part == b.part && a.node < b.node);
+    });
+    limit_ = nodes_ ? options_.uniform * irradiance() : 0;
+    most_owed_ = kMostOwed * limit_, owed_ = 0;
+    Receiver r = receiver;
+    r.rows = 0;
+    std::size_t first = 0;
+    do {
+      std::size_t last = first;
+      while (last < arrivals_.size() && arrivals_[last].part == arrivals_[first].part) ++last;
+      const std::size_t before = out.links.size();
+      double limit = limit_;
+      if (last > first) cut(0, first, last, out.links);
+      while (nodes_ && limit_ > 0 && out.links.size() - before > options_.most_links && limit_ < 64 * limit) {
+        limit_ *= 2;
+        owed_ = 0;
+        out.links.resize(before);
+        cut(0, first, last, out.links);
+      }
+      if (nodes_) settle(std::span(out.links).subspan(before));
+      limit_ = limit, owed_ = 0;
+      out.row_end.push_back(static_cast<std::uint32_t>(out.links.size()));
+      ++r.rows;
+      if (r.hands_down) write_shares(first < last ? arrivals_[first].part : 0, out.shares);
+      first = last;
+    } while (first < arrivals_.size());
+    out.receivers.push_back(r);
+  }
+
+  /// With B as known so far.
+  double irradiance() const {
+    double E = sky_mean_;
+    for (const Arrival& a : arrivals_) E += a.weight * nodes_->mean[a.node];
+    for (const Member& m : members_) E += m.area / area_ * luminous_mean(E_[m.patch]);
+    return E;
+  }
+
+  void add_shares(std::uint16_t part, double weight, const Vec3& d) {
+    std::array<double, kMostMembers> share{};
+    find_shares(d, std::span(share).first(members_.size()));
+    for (std::size_t m = 0; m < members_.size(); ++m) shares_[part][m] += weight * share[m];
+    part_weight_[part] += weight;
+  }
+  void write_shares(std::uint16_t part, std::vector<float>& out) const {
+    const double weight = part_weight_[part];
+    for (std::size_t m = 0; m < members_.size(); ++m)
+      out.push_back(static_cast<float>(weight > 0 ? shares_[part][m] / weight : 1));
+  }
+
+  /// Nodes are a little darker than what is seen of them: their hidden parts lie in shadows. Some weight goes from the
+  /// darkest to the brightest source, so that the row brings what its rays found, and its sum stays.
+  void settle(std::span<Link> links) {
+    if (links.size() < 2 || owed_ == 0) return;
+    const auto [low, high] = std::minmax_element(links.begin(), links.end(), [&](const Link& a, const Link& b) {
+      return nodes_->mean[a.source] < nodes_->mean[b.source];
+    });
+    const double apart = nodes_->mean[high->source] - nodes_->mean[low->source];
+    if (!(apart > 0)) return;
+    const double most = 0.5 * std::min(low->weight, high->weight);
+    const auto moved = static_cast<float>(std::clamp(owed_ / apart, -most, most));
+    high->weight -= moved, low->weight += moved;
+  }
+
+  /// Links for arrivals first .. last - 1, all under node v.
+  void cut(std::uint32_t v, std::size_t first, std::size_t last, std::vector<Link>& out) {
+    double weight = 0, light = 0;
+    for (std::size_t k = first; k < last; ++k) {
+      weight += arrivals_[k].weight;
+      if (nodes_) light += arrivals_[k].weight * nodes_->mean[arrivals_[k].node];
+    }
+    bool uniform = tree_.is_leaf(v);
+    if (!uniform && nodes_ && weight * nodes_->deviation[v] <= limit_) {
+      const double more = owed_ + weight * nodes_->mean[v] - light;
+      uniform = std::abs(more) <= most_owed_;
+      if (uniform) owed_ = more;
+    }
+    if (uniform) {
+      out.push_back({v, static_cast<float>(weight)});
+      return;
+    }
+    if (arrivals_[first].node == arrivals_[last - 1].node) {
+      out.push_back({arrivals_[first].node, static_cast<float>(weight)});
+      return;
+    }
+    for (std::uint32_t child = v + 1; first < last; child = tree_.end[child]) {
+      if (arrivals_[first].node >= tree_.end[child]) continue;
+      std::size_t next = first;
+      while (next < last && arrivals_[next].node < tree_.end[child]) ++next;
+      cut(child, first, next, out);
+      first = next;
+    }
+  }
+
+  const Illumination& light_;
+  const ElementTree& tree_;
+  const Net& net_;
+  const NodeLight* nodes_;
+  const Field& E_;
+  const LinkOptions& options_;
+  const PatchSet& patches_;
+  std::vector<Member> members_;
+  std::vector<Ray> rays_;
+  std::vector<Hit> hits_;
+  std::vector<const Member*> from_;
+  std::vector<Arrival> arrivals_;
+  std::array<std::array<double, kMostMembers>, kParts> shares_{};  ///< by part of the sphere, sums
+  std::array<double, kParts> part_weight_{};
+  std::uint64_t key_ = 0;
+  bool hands_down_ = false;
+  double area_ = 0, bright_ = 0, others_ = 0, arriving_ = 0, sky_mean_ = 0, limit_ = 0, owed_ = 0, most_owed_ = 0;
+};
+
+void find_spaces(Transport& transport, const ElementTree& tree, std::span<const Receiver> receivers,
+                 std::span<const std::array<std::uint32_t, kNeighbours>> neighbours) {
+  const std::size_t n = tree.leaf_count();
+  DisjointSets joined(n);
+  for (std::size_t r = 0; r < receivers.size(); ++r) {
+    const std::size_t p = tree.patch[receivers[r].first_leaf];
+    for (std::uint32_t l = receivers[r].first_leaf + 1; l < receivers[r].leaf_end; ++l) joined.join(p, tree.patch[l]);
+    for (const std::uint32_t q : neighbours[r])
+      if (q != PatchId::kNone) joined.join(p, q);
+  }
+  transport.space.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t first = joined.find(i);
+    transport.space[i] = first == i ? static_cast<std::uint32_t>(transport.spaces++) : transport.space[first];
+  }
+}
+
+}  // namespace
+
+Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const Field& E,
+                      const LinkOptions& options, const Monitor& monitor) {
+  const PatchSet& patches = light.problem.patches;
+  const std::size_t n = patches.patch_count();
+  Transport transport;
+  transport.E_sky = Field(n, patches.channels);
+  transport.arrives.resize(n), transport.escapes.resize(n);
+  NodeLight nodes;
+  if (B.size() == n) nodes = node_light(tree, B);
+  const Net net(options.bundle_rays, stream_key(options.seed, kBundle));
+  const std::vector<Receiver> receivers = choose_receivers(tree, patches, options.cluster_diameter);
+  std::array<std::uint32_t, kNeighbours> nobody;
+  nobody.fill(PatchId::kNone);
+  std::vector<std::array<std::uint32_t, kNeighbours>> neighbours(receivers.size(), nobody);
+  transport.blocks.resize((receivers.size() + kReceiversInBlock - 1) / kReceiversInBlock);
+
+  constexpr std::size_t kBatch = 64;  // blocks between looks at the clock
+  for (std::size_t begin = 0; begin < transport.blocks.size(); begin += kBatch) {
+    if (monitor.should_stop()) {
+      transport.complete = false;
+      return transport;
+    }
+    monitor.report("links", static_cast<double>(begin) / static_cast<double>(transport.blocks.size()));
+    parallel_for(std::min(kBatch, transport.blocks.size() - begin), 1, [&](std::size_t from, std::size_t to) {
+      Tracer tracer(light, tree, net, B.size() == n ? &nodes : nullptr, E, options);
+      for (std::size_t b = begin + from; b < begin + to; ++b) {
+        LinkBlock& block = transport.blocks[b];
+        const std::size_t first = b * kReceiversInBlock, last = std::min(receivers.size(), first + kReceiversInBlock);
+        block.first_leaf = receivers[first].first_leaf, block.leaf_end = receivers[last - 1].leaf_end;
+        for (std::size_t r = first; r < last; ++r) tracer.add(receivers[r], block, transport, neighbours[r]);
+        block.links.shrink_to_fit(), block.shares.shrink_to_fit();
+      }
+    });
+  }
+  const int pairs = light.lamps.has_emitters() ? options.lamp_rays : 0;
+  transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs);
+  find_spaces(transport, tree, receivers, neighbours);
+  return transport;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,43 @@
+#pragma once
+// Links by rays: a bundle from every receiver, and pairs with bright sources.
+
+#include <cstdint>
+
+#include "solver/hierarchy/links.h"
+#include "solver/lights/illumination.h"
+#include "solver/model/element_tree.h"
+#include "solver/model/monitor.h"
+
+namespace clerestory {
+
+struct LinkOptions {
+  int bundle_rays = 256;
+  int lamp_rays = 64;            ///< pairs with bright sources, a multiple of 16
+  double uniform = 0.01;         ///< hits are linked at the highest node whose B varies by less than this share of E_p
+  double cluster_diameter = 0;   ///< nodes of up to 32 leaves within this receive together [m]
+  std::size_t most_links = 192;  ///< of a receiver's row; more are merged, whatever `uniform` says
+  std::uint64_t seed = 1;
+};
+
+/// Two estimators for the weight of p <- q, combined by the balance heuristic (Veach & Guibas 1995): R cosine rays that
+/// leave points all over p, and L pairs of a point of p with one of a bright source, chosen by light.lamps. A ray of
+/// either kind that ends on a bright patch counts
+///   w = (cos / pi) / (R cos / pi + L density),
+/// one that ends elsewhere w = 1 / R. The bright patches' weights so have the noise of pairs where these are better.
+/// The others share what the bright ones leave of all that arrives: a row of weights sums to the share of the bundle's
+/// rays that reached patches, which is exact in a closed room.
+///
+/// Hits, sorted in the order of the tree, are cut at its nodes from the root: a node takes all under it when
+///   (sum of w) * (standard deviation of B over its area) <= uniform * E_p
+/// and |sum of w (B of the node - B of the leaf that was hit)|, added up over the nodes taken so far, stays below a
+/// tenth of that: what is hidden of a node is darker than what is seen, and without the second condition a row loses 2
+/// %.
+///
+/// light  made with what the explicit sources send more than their surroundings; its problem is that of the leaves.
+/// B      N x channels, radiosity known so far, or what it is above a level; empty: nothing is merged.
+/// E      N x channels, direct irradiance that the links do not bring [W/m2].
+/// Cost   R + L rays for each receiver; 8 bytes a link.
+Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const Field& E,
+                      const LinkOptions& options, const Monitor& monitor = {});
+
+}  // namespace clerestory

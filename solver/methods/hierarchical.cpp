@@ -1,0 +1,259 @@
+#include "solver/methods/hierarchical.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numeric>
+
+#include "solver/closure.h"
+#include "solver/hierarchy/balance.h"
+#include "solver/hierarchy/bf_refine.h"
+#include "solver/hierarchy/build_tree.h"
+#include "solver/hierarchy/refine.h"
+#include "solver/hierarchy/trace_links.h"
+#include "solver/lights/direct.h"
+#include "solver/methods/progressive.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+constexpr int kMostRounds = 4;              // of coarse solves before the last one
+constexpr double kWorthAnother = 1.3;       // growth of the leaves that makes a coarse solve on them worth its rays
+constexpr double kReceivers = 200'000;      // faces finer than this share of the area receive in clusters
+constexpr double kStakeByTolerance = 1e-4;  // flux at stake of `bf`, as a share of tolerance times all emitted flux
+constexpr double kGroundLevel = 0.1;        // share of a space's area that is no brighter than its ground level
+
+/// Quality of one round: thresholds fall from round to round.
+struct Quality {
+  LinkOptions links;
+  DirectOptions direct;
+  double residual;
+};
+
+Quality coarse(const HierarchyOptions& o) {
+  return {{.bundle_rays = std::max(32, o.bundle_rays / 4), .lamp_rays = 16, .uniform = 0.02, .seed = o.seed + 1},
+          {.lamp_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
+          1e-3};
+}
+Quality full(const HierarchyOptions& o) {
+  return {{.bundle_rays = o.bundle_rays, .lamp_rays = o.lamp_rays, .seed = o.seed},
+          {.sky_rays = 0, .seed = o.seed},
+          o.residual};
+}
+
+/// What one round hands to the next: the light on the leaves as they were.
+struct Round {
+  HierarchicalSolution result;
+  std::vector<std::uint32_t> element;  ///< of the mesh, by leaf
+  std::vector<std::uint32_t> space;    ///< by leaf
+  std::size_t spaces = 0;
+  std::vector<std::uint32_t> to_halve;  ///< of the mesh, by `bf`
+  bool complete = false;
+};
+
+std::size_t leaves_under(const ElementMesh& mesh, std::uint32_t e) {
+  if (mesh[e].is_leaf()) return 1;
+  return leaves_under(mesh, mesh[e].first_half) + leaves_under(mesh, mesh[e].first_half + 1);
+}
+
+/// The round's B on the leaves of now: halves inherit. Both sets of leaves are in the order of the mesh.
+Field inherited(const Field& B, const Round& round, const ElementMesh& mesh) {
+  Field out(mesh.leaf_count(), B.channels);
+  std::size_t leaf = 0;
+  for (std::size_t i = 0; i < round.element.size(); ++i)
+    for (std::size_t k = leaves_under(mesh, round.element[i]); k > 0; --k) out.set(leaf++, B[i]);
+  return out;
+}
+
+/// What bright sources are told by: B without the part of their space's ground level that has gone round eight times or
+/// more. In a very bright room that is most of the light, it comes from everywhere, and bundles know it exactly; lamps
+/// must stand out before it, or the energy they send would be met by chance.
+Field above_ground(const PatchSet& leaves, const Field& B, const Round& round) {
+  std::vector<std::uint32_t> order(B.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::vector<double> light(B.size()), area(round.spaces, 0.0), rho(round.spaces, 0.0);
+  for (std::size_t i = 0; i < B.size(); ++i) {
+    light[i] = luminous_mean(B[i]);
+    area[round.space[i]] += leaves.area[i];
+    rho[round.space[i]] += leaves.area[i] * luminous_mean(leaves.rho[i]);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return light[a] < light[b] || (light[a] == light[b] && a < b); });
+  std::vector<Spectrum> ground(round.spaces);
+  std::vector<double> darker(round.spaces, 0.0);
+  for (const std::uint32_t i : order) {
+    const std::uint32_t s = round.space[i];
+    if (darker[s] < kGroundLevel * area[s]) ground[s] = B[i] * std::pow(rho[s] / area[s], 8);
+    darker[s] += leaves.area[i];
+  }
+  Field above(B.size(), B.channels);
+  for (std::size_t i = 0; i < B.size(); ++i) {
+    const Spectrum more = B[i] - ground[round.space[i]];
+    above.set(i, {std::max(0.0, more[0]), std::max(0.0, more[1]), std::max(0.0, more[2])});
+  }
+  return above;
+}
+
+/// Faces that fit into this are no receivers of their own [m].
+double receiver_size(const PatchSet& patches, double shortest_edge) {
+  const double n = static_cast<double>(std::max<std::size_t>(patches.patch_count(), 1));
+  const double area = patches.total_area();
+  return std::max({shortest_edge, 0.5 * std::sqrt(area / n), std::sqrt(area / kReceivers)});
+}
+
+std::string round_line(const char* what, const Solution& s, std::size_t leaves, std::size_t receivers) {
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "%s: %zu elements, %zu receivers, %zu clusters, %zu links, %ld sweeps, residual %.2g", what, leaves,
+                receivers, s.clusters, s.links, s.iterations, s.residual);
+  return line;
+}
+
+/// links -> gather -> push-pull on the leaves as they are. before: the round that came earlier, if any.
+Round solve_round(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options, Quality quality,
+                  const char* name, const Round* before, const Monitor& monitor) {
+  Round round;
+  round.element = mesh.leaves();
+  HierarchicalSolution& out = round.result;
+  out.elements = mesh.leaf_patches();
+  const PatchSet& leaves = out.elements;
+  const Problem problem{leaves, whole.rays, whole.lights};
+  const std::size_t n = leaves.patch_count();
+
+  if (options.oracle == HierarchyOptions::Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
+  DirectLight direct = direct_light(Illumination(problem), quality.direct, monitor);
+  if (monitor.should_stop()) return round;
+  Field guess, glow;
+  if (before) {
+    guess = inherited(before->result.solution.B, *before, mesh);
+    glow = inherited(above_ground(before->result.elements, before->result.solution.B, *before), *before, mesh);
+  } else {
+    glow = leaves.M;
+    for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.rho[i] * direct.E[i]);
+  }
+  const ElementTree tree = build_tree(leaves, before ? guess : glow);
+  const Illumination light(problem, glow);
+  quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
+  Transport transport;
+  if (options.oracle == HierarchyOptions::Oracle::error) {
+    transport = trace_links(light, tree, before ? glow : Field{}, direct.E, quality.links, monitor);
+  } else {
+    double first_flux = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      first_flux += leaves.area[i] * luminous_mean(leaves.M[i] + leaves.rho[i] * direct.E[i]);
+    BfLinks links = bf_refine(problem, tree, before ? guess : glow,
+                              {kStakeByTolerance * options.tolerance * first_flux, options.seed}, monitor);
+    for (const std::uint32_t p : links.to_halve) {
+      const std::uint32_t e = round.element[p];
+      if (mesh.edge_length(e, mesh[e].edge) >= 2 * options.shortest_edge) round.to_halve.push_back(e);
+    }
+    transport = std::move(links.transport);
+  }
+  if (!transport.complete) return round;
+
+  out.small_lights = direct.E;
+  Field E_direct = direct.E;
+  double from_sky = 0, glowing = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    E_direct.add(i, transport.E_sky[i]);
+    from_sky += leaves.area[i] * luminous_mean(transport.E_sky[i]);
+    glowing += leaves.area[i] * luminous_mean(leaves.M[i]);
+  }
+  Solution& s = out.solution;
+  s = balance(leaves, tree, transport, E_direct, std::move(guess), quality.residual, monitor);
+  s.method = "hierarchical";
+  s.energy.emitted += glowing + from_sky + direct.energy.emitted;
+  s.energy.absorbed += direct.energy.absorbed;
+  s.energy.escaped += direct.energy.escaped;
+  s.rays = direct.rays + transport.rays;
+  s.clusters = tree.clusters;
+  s.links = transport.link_count();
+  s.log = {round_line(name, s, n, transport.receiver_count())};
+  round.space = std::move(transport.space);
+  round.spaces = transport.spaces;
+  round.complete = true;
+  return round;
+}
+
+/// Something to show while there is nothing better: shooting, or its ambient term alone.
+HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options,
+                                   bool ambient_only, const Monitor& monitor) {
+  HierarchicalSolution out;
+  out.elements = mesh.leaf_patches();
+  const Problem problem{out.elements, whole.rays, whole.lights};
+  const Illumination light(problem);
+  const DirectLight direct =
+      direct_light(light, {.lamp_rays = 16, .edge_rays = 16, .sky_rays = 32, .seed = options.seed}, monitor);
+  const Closure closure = measure_closure(problem, 16, options.seed);
+  out.solution =
+      shoot(problem, direct, closure,
+            {.stop_fraction = 0.03, .rays_per_patch = 32, .max_rounds = ambient_only ? 0 : 1000, .seed = options.seed},
+            monitor);
+  out.small_lights = direct_light(light, {.lamp_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = options.seed}).E;
+  out.solution.method = "hierarchical";
+  out.solution.log.push_back(ambient_only ? "stopped early: the ambient estimate"
+                                          : "early picture by progressive shooting");
+  return out;
+}
+
+}  // namespace
+
+HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, const HierarchyOptions& options,
+                                  const Monitor& monitor) {
+  HierarchicalSolution early;
+  const bool hurry = monitor.deadline != Monitor{}.deadline;
+  if (hurry) early = early_picture(problem, mesh, options, false, monitor);
+
+  std::unique_ptr<Round> last;
+  std::vector<std::string> log = early.solution.log;
+  unsigned long long rays = early.solution.rays;
+  const auto go_on = [&](Round&& round) {
+    rays += round.result.solution.rays;
+    if (!round.complete) return false;
+    log.insert(log.end(), round.result.solution.log.begin(), round.result.solution.log.end());
+    last = std::make_unique<Round>(std::move(round));
+    return !monitor.should_stop();
+  };
+
+  bool going = true;
+  double leaves_solved = 0;
+  for (int number = 0; going && number < kMostRounds; ++number) {
+    monitor.report("refine", static_cast<double>(number) / kMostRounds);
+    leaves_solved = static_cast<double>(mesh.leaf_count());
+    const std::string name = "round " + std::to_string(number);
+    going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), monitor));
+    if (!going) break;
+    if (options.oracle == HierarchyOptions::Oracle::bf) {
+      // Each round refines by the light that the last one found.
+      if (mesh.leaf_count() + 4 * last->to_halve.size() <= options.most_elements) mesh.split(last->to_halve);
+      continue;
+    }
+    const Problem on_leaves{last->result.elements, problem.rays, problem.lights};
+    const Field glow = above_ground(last->result.elements, last->result.solution.B, *last);
+    const RefineOptions how{options.tolerance, options.shortest_edge, options.most_elements, options.seed};
+    const std::size_t halved = refine(mesh, Illumination(on_leaves, glow), last->result.solution.E,
+                                      last->result.solution.B, how, rays, monitor);
+    log.push_back(name + ": " + std::to_string(halved) + " halved, " + std::to_string(mesh.leaf_count()) + " elements");
+    if (static_cast<double>(mesh.leaf_count()) < kWorthAnother * leaves_solved) break;
+  }
+  if (going) going = go_on(solve_round(problem, mesh, options, full(options), "last round", last.get(), monitor));
+
+  HierarchicalSolution out;
+  if (last) {
+    out = std::move(last->result);
+  } else {
+    out = hurry ? std::move(early) : early_picture(problem, mesh, options, true, {});
+    if (!hurry) log.push_back(out.solution.log.back());
+  }
+  if (!going) {
+    out.solution.stop = why_stopped(monitor);
+    log.push_back("stopped early");
+  }
+  out.solution.log = std::move(log);
+  out.solution.rays = rays;
+  return out;
+}
+
+}  // namespace clerestory

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "solver/model/disjoint_sets.h"
@@ -39,6 +40,28 @@ double angle_at(const std::array<Vec3, 3>& x, std::size_t k) {
   return std::atan2(length(cross(e, f)), dot(e, f));
 }
 
+/// Of all triangles, sorted by their ends, then by triangle.
+std::vector<HalfEdge> half_edges(const PatchSet& patches) {
+  std::vector<std::uint32_t> next(patches.vertices.size() + 1, 0);
+  const auto each = [&](const auto& take) {
+    for (std::uint32_t t = 0; t < patches.triangle_count(); ++t)
+      for (std::uint8_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = patches.corners[t][k].value, b = patches.corners[t][(k + 1u) % 3u].value;
+        take(HalfEdge{std::min(a, b), std::max(a, b), t, k, a < b});
+      }
+  };
+  each([&](const HalfEdge& e) { ++next[e.low + 1]; });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<HalfEdge> edges(3 * patches.triangle_count());
+  each([&](const HalfEdge& e) { edges[next[e.low]++] = e; });
+  const auto at = [&](std::uint32_t i) { return edges.begin() + static_cast<std::ptrdiff_t>(i); };
+  for (std::size_t v = 0; v + 1 < next.size(); ++v)  // next[v] has moved on to the end of v's edges
+    std::sort(at(v > 0 ? next[v - 1] : 0), at(next[v]), [](const HalfEdge& x, const HalfEdge& y) {
+      return x.high != y.high ? x.high < y.high : x.triangle < y.triangle;
+    });
+  return edges;
+}
+
 /// Facets around a point that face nearly the same way.
 struct Facing {
   Vec3 normal;  ///< of the first of them
@@ -53,29 +76,41 @@ void place_samples(const PatchSet& patches, VertexLightmap& map) {
   constexpr double kAlike = 0.99;          // cosine of 8 degrees: turning a facet so far changes E by little
   constexpr double kInPlane = 1 - 5e-9;    // 1e-4 rad
   constexpr double kWayToCentroid = 2e-3;  // far enough from edges for single precision rays, too near to be seen
-  std::vector<std::vector<Facing>> facings(map.position.size());
-  for (std::uint32_t p = 0; p < patches.patch_count(); ++p) {
-    const auto x = patches.corner_positions(PatchId{p});
-    const Vec3 centroid = (x[0] + x[1] + x[2]) / 3;
-    for (std::size_t k = 0; k < 3; ++k) {
-      auto& around = facings[map.corners[p][k]];
-      auto facing = std::find_if(around.begin(), around.end(),
+  const std::size_t points = map.position.size(), count = patches.patch_count();
+  // Corners by point, in the order of the patches.
+  std::vector<std::uint32_t> begin_at(points + 1, 0), at(3 * count);
+  for (const auto& c : map.corners)
+    for (const std::uint32_t point : c) ++begin_at[point];
+  std::partial_sum(begin_at.begin(), begin_at.end(), begin_at.begin());
+  for (std::size_t p = count; p-- > 0;)
+    for (std::size_t k = 3; k-- > 0;) at[--begin_at[map.corners[p][k]]] = static_cast<std::uint32_t>(3 * p + k);
+
+  map.sample_begin.reserve(points + 1);
+  map.sample_begin = {0};
+  map.sample_position.reserve(points);
+  map.sample_normal.reserve(points);
+  map.sample_weight.reserve(points);
+  std::vector<Facing> facings;
+  for (std::size_t i = 0; i < points; ++i) {
+    facings.clear();
+    for (std::uint32_t c = begin_at[i]; c < begin_at[i + 1]; ++c) {
+      const PatchId p{std::size_t{at[c] / 3}};
+      const auto x = patches.corner_positions(p);
+      const std::size_t k = at[c] % 3;
+      auto facing = std::find_if(facings.begin(), facings.end(),
                                  [&](const Facing& f) { return dot(f.normal, patches.normal[p]) > kAlike; });
-      if (facing == around.end()) facing = around.insert(around.end(), Facing{patches.normal[p], {}, 0, 0});
+      if (facing == facings.end()) facing = facings.insert(facings.end(), Facing{patches.normal[p], {}, 0, 0});
       facing->weight += angle_at(x, k);
       if (dot(facing->normal, patches.normal[p]) < kInPlane) continue;
-      facing->inward += centroid - x[k];
+      facing->inward += (x[0] + x[1] + x[2]) / 3 - x[k];
       ++facing->in_plane;
     }
-  }
-  map.sample_begin = {0};
-  for (std::size_t i = 0; i < facings.size(); ++i) {
     double sum = 0;
-    for (const Facing& f : facings[i]) sum += f.weight;
-    for (const Facing& f : facings[i]) {
+    for (const Facing& f : facings) sum += f.weight;
+    for (const Facing& f : facings) {
       map.sample_position.push_back(map.position[i] + f.inward * (kWayToCentroid / f.in_plane));
       map.sample_normal.push_back(f.normal);
-      map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings[i].size()));
+      map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
     }
     map.sample_begin.push_back(static_cast<std::uint32_t>(map.sample_position.size()));
   }
@@ -86,21 +121,11 @@ void place_samples(const PatchSet& patches, VertexLightmap& map) {
 VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
   if (!patches.splits.empty())
     throw std::logic_error("make_lightmap: halved patches have ElementMesh::leaf_lightmap()");
-  const std::size_t triangles = patches.triangle_count(), count = patches.patch_count();
+  const std::size_t count = patches.patch_count();
   constexpr std::uint32_t kNone = VertexLightmap::kNone;
   VertexLightmap map;
   map.neighbour.assign(count, {kNone, kNone, kNone});
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * triangles);
-  for (std::uint32_t t = 0; t < triangles; ++t)
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = patches.corners[t][k].value, b = patches.corners[t][(k + 1u) % 3u].value;
-      edges.push_back({std::min(a, b), std::max(a, b), t, k, a < b});
-    }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& x, const HalfEdge& y) {
-    return x.low != y.low ? x.low < y.low : x.high != y.high ? x.high < y.high : x.triangle < y.triangle;
-  });
-
+  std::vector<HalfEdge> edges = half_edges(patches);
   const double least_cosine = std::cos(crease_deg * std::numbers::pi / 180);
   DisjointSets shared(3 * count);
   std::vector<Blade> blades;
@@ -136,6 +161,7 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
     begin = end;
   }
 
+  edges = {};
   map.corners.resize(count);
   std::vector<std::uint32_t> point_of(3 * count, kNone);
   for (std::uint32_t p = 0; p < count; ++p) {

@@ -24,7 +24,7 @@ GatherQuality sensor_quality(const SolveOptions& options) {
     case Accuracy::standard:
       return quality(options, 512, 2048, 128, 32);
     case Accuracy::fine:
-      return quality(options, 1024, 8192, 256, 64);
+      return quality(options, 2048, 8192, 256, 64);
   }
   return {};
 }
@@ -77,7 +77,7 @@ GatherQuality vertex_quality(const SolveOptions& options) {
     case Accuracy::standard:
       return quality(options, 256, 768, 128, 16);
     case Accuracy::fine:
-      return quality(options, 1024, 3072, 256, 32);
+      return quality(options, 512, 2048, 256, 32);
   }
   return {};
 }

@@ -93,6 +93,10 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
 
 }  // namespace
 
+bool wants_pilot(const Illumination& light, const GatherPattern& pattern) {
+  return pattern.deepest() > pattern.least() && !light.sky.dark();
+}
+
 RayShares share_rays(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                      unsigned long long& rays) {
   const int strata = pattern.strata(), g = pattern.quality().grid;
@@ -187,8 +191,8 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
 
 PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                         unsigned long long& rays) {
-  const bool adapts = pattern.deepest() > pattern.least();
-  return gather_point(light, p, n, pattern, adapts ? share_rays(light, p, n, pattern, rays) : RayShares{}, rays);
+  return gather_point(light, p, n, pattern,
+                      wants_pilot(light, pattern) ? share_rays(light, p, n, pattern, rays) : RayShares{}, rays);
 }
 
 }  // namespace clerestory

@@ -16,6 +16,9 @@ struct PointLight {
   double noise = 0;  ///< standard error of E from the bundle, luminous mean, by the differences of neighbouring rays
 };
 
+/// Where no sky looks in, bright patches are the sharpest contrast, and those have rays of their own.
+bool wants_pilot(const Illumination& light, const GatherPattern& pattern);
+
 /// Rays for each stratum as powers of 2: where a pilot's ray and its neighbours' come back alike, the least. A pilot's
 /// values are used for nothing else, as an adaptive sum that keeps them is biased; its choice serves points nearby too.
 using RayShares = std::vector<std::uint8_t>;
@@ -32,7 +35,7 @@ RayShares share_rays(const Illumination& light, const Vec3& p, const Vec3& n, co
 PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                         const RayShares& shares, unsigned long long& rays);
 
-/// The same with a pilot of its own, where the quality asks for one.
+/// The same with a pilot of its own, where it wants one.
 PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                         unsigned long long& rays);
 

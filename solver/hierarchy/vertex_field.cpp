@@ -21,8 +21,7 @@ class Gatherer {
       : light_(problem, B),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
-        // Where no sky looks in, bright patches are the sharpest contrast, and those have rays of their own.
-        pilots_(pattern_.deepest() > pattern_.least() && !light_.sky.dark()) {}
+        pilots_(wants_pilot(light_, pattern_)) {}
 
   /// False when the monitor stopped it; field.reached then tells how far it came.
   bool gather(VertexField& field, const Monitor& monitor) {

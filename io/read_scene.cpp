@@ -2,10 +2,10 @@
 
 #include "io/formats/model.h"
 #include "io/input_file.h"
-#include "io/scene_file/light_entries.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/scene_file/place_model.h"
 #include "io/scene_file/read_scene_file.h"
+#include "io/scene_file/sky_entries.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// The "luminaires", "sky", "sun", "location" and "time" of a scene file.
+// The "luminaires" of a scene file.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,8 @@ namespace clerestory {
 
 /// Reads all of them from the scene's root object into `lights`.
 ///
-/// throws  InputError; also for what a later version will read (IES and LDT files, cie-clear, cie-general, perez,
-///         weather files, a sun computed from place and time), naming what can be used instead.
+/// throws  InputError; also for what a later version will read (IES and LDT files), naming what can be used instead.
 void read_light_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels, Lights& lights,
                         std::vector<std::string>& warnings);
-
-/// The sky of --sky NAME[:LUX]; 10,000 lx unless it says otherwise.
-Sky sky_of_option(std::string_view option);
 
 }  // namespace clerestory

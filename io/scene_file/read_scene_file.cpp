@@ -12,6 +12,7 @@
 #include "io/scene_file/material_rules.h"
 #include "io/scene_file/place_model.h"
 #include "io/scene_file/sensor_entries.h"
+#include "io/scene_file/sky_entries.h"
 #include "io/text.h"
 #include "io/unit_vector.h"
 #include "solver/model/error.h"
@@ -129,6 +130,7 @@ Scene read_scene_file(const std::filesystem::path& file) {
   // What is quick to check comes first; models may take a while.
   if (root.has("materials")) rules = read_material_rules(root.at("materials"), name, channels, scene.warnings);
   read_light_entries(root, name, channels, scene.lights, scene.warnings);
+  read_sky_entries(root, name, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
     scene.settings =
         read_settings(JsonObject(root.at("solver"), name + ": solver",

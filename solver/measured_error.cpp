@@ -27,10 +27,11 @@ struct Budget {
   double rays;
 };
 
-/// A fifth of what the result cost, from counts and not from time, so that every run measures the same.
+/// A tenth of the rays of the result, about a fifth of its time as they are single and go anywhere; from counts and not
+/// from time, so that every run measures the same.
 Budget budget(const SolveOptions& options, unsigned long long rays_spent) {
   // More with every round that tightens: a small error needs a sharp measurement.
-  const double more = std::pow(4.0, options.tighten), share = 0.2 * static_cast<double>(rays_spent);
+  const double more = std::pow(4.0, options.tighten), share = 0.1 * static_cast<double>(rays_spent);
   switch (options.accuracy) {
     case Accuracy::draft:
       return {std::size_t{64} << options.tighten, 256, std::max(share, 6e4 * more)};

@@ -25,7 +25,8 @@ MeasuredError summarise(std::span<const Comparison> comparisons);
 
 /// Compares the lightmap (linear between its points) with path tracing at random points of the surfaces.
 ///
-/// rays_spent  by the solution so far: a fifth as many go into the measurement, and never so few that it says nothing.
+/// rays_spent  by the solution so far: a tenth as many go into the measurement, a fifth of its time, and never so few
+///             that it says nothing.
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const SolveOptions& options,
                             unsigned long long rays_spent, const Monitor& monitor = {});
 

@@ -111,7 +111,7 @@ std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, 
   std::optional<MeasuredError> error, error_sensors;
   if (!monitor.should_stop()) error = if_measured(measure_error(problem, lightmap, settings.solve, solution.rays, monitor));
   if (!monitor.should_stop() && !sensors.empty())
-    error_sensors = if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, at_sensors.rays, monitor));
+    error_sensors = if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, solution.rays, monitor));
   if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
   lap.add_to(seconds.measure);
   return Solved{std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),

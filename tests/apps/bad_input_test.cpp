@@ -33,6 +33,7 @@ TEST_F(BadUsage, ExitsTwoAndSuggestsTheNearestName) {
   expect_refusal({"slove", scene_, "-o", out_}, 2, {"'slove'", "did you mean 'solve'?"});
   expect_refusal({"solve", scene_, "-o", out_, "--metod", "path"}, 2, {"'--metod'", "did you mean '--method'?"});
   expect_refusal({"solve", scene_, "-o", out_, "--method", "progresive"}, 2, {"did you mean 'progressive'?"});
+  expect_refusal({"solve", scene_, "-o", out_, "--method", "radiosity"}, 2, {"known are hierarchical, progressive"});
   expect_refusal({"solve", scene_, "-o", out_, "--accuracy", "finest"}, 2, {"did you mean 'fine'?"});
   expect_refusal({"solve"}, 2, {"required"});
   expect_refusal({"solve", scene_}, 2, {"--output"});
@@ -50,10 +51,6 @@ TEST_F(BadUsage, ExitsTwoAndSuggestsTheNearestName) {
   for (const char* value : {"-1", "two", "100000", "1e99"})
     expect_refusal({"solve", scene_, "-o", out_, "--threads", value}, 2, {"--threads"});
   expect_refusal({"solve", scene_, "-o", out_, "--seed", "blue"}, 2, {"--seed"});
-}
-
-TEST_F(BadUsage, TheMethodOfALaterVersionIsRefusedByName) {
-  expect_refusal({"solve", scene_, "-o", out_, "--method", "hierarchical"}, 2, {"hierarchical", "progressive"});
 }
 
 TEST_F(BadUsage, AnOutputThatCannotBeWrittenIsRefusedBeforeSolving) {

@@ -75,7 +75,7 @@ TEST_P(ClosedRoom, IsTheSameAtEveryScaleAndFarFromTheOrigin) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, ClosedRoom, testing::Values("progressive", "gauss-seidel", "jacobi"),
+INSTANTIATE_TEST_SUITE_P(Methods, ClosedRoom, testing::Values("hierarchical", "progressive", "gauss-seidel", "jacobi"),
                          [](const auto& method) {
                            std::string name = method.param;
                            std::erase(name, '-');

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 #include "solver/methods/path.h"
 #include "solver/methods/path_tracer.h"
@@ -31,7 +32,29 @@ PatchSet lamp_room(std::size_t cells) {
   return b.build();
 }
 
+/// What a reference costs: relative standard error of irradiance at a point after a millisecond of one core, over the
+/// room. CPU time, so that a busy machine does not show.
+void reference_at_points() {
+  const PatchSet patches = lamp_room(28);
+  const RayScene rays(patches);
+  const Lights none;
+  const Problem problem{patches, rays, none};
+  const Illumination light(problem);
+  double variance = 0, mean = 0, points = 0;
+  unsigned long long traced = 0;
+  const std::clock_t start = std::clock();
+  for (std::size_t i = 0; i < patches.patch_count(); i += patches.patch_count() / 97 + 1, ++points) {
+    const auto corner = patches.corner_positions(PatchId{i});
+    const Vec3 p = (corner[0] + corner[1] + corner[2]) / 3 + patches.normal[i] * rays.lift();
+    const PathEstimate e = trace_paths_at_point(light, p, patches.normal[i], stream_key(77, i), 1024, traced);
+    variance += std::pow(e.std_error[0], 2), mean += e.E[0];
+  }
+  const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  row("path: standard error of a point after 1 ms of a core", 100 * std::sqrt(variance * ms) / mean, "%", "");
+}
+
 int run() {
+  reference_at_points();
   const PatchSet patches = lamp_room(55);
   const RayScene rays(patches);
   const Lights none;

@@ -124,7 +124,7 @@ class Tracer {
     look_at(receiver);
     send_bundle(transport, neighbours);
     if (light_.lamps.has_emitters() && options_.lamp_rays > 0) send_pairs();
-    fill_row();
+    fill_row(transport);
     write(receiver, out);
   }
 
@@ -148,7 +148,7 @@ class Tracer {
     key_ = stream_key(options_.seed, kBundle, members_[0].patch);
     hands_down_ = receiver.hands_down;
     arrivals_.clear();
-    bright_ = others_ = arriving_ = 0;
+    bright_ = bright_seen_ = bright_hits_ = 0;
     if (hands_down_) shares_ = {}, part_weight_ = {};
   }
 
@@ -211,9 +211,9 @@ class Tracer {
           const double density = light_.lamps.density(hit.patch, x, from.normal, hit.distance, cos_q, true);
           weight = shared_weight(cos_p, R * cos_p, options_.lamp_rays * density);
         }
-        arriving_ += passes / R;
-        add_arrival(hit.patch, weight * passes, bright, d);
-        for (std::size_t m = 0; m < n; ++m) arrive[m] += share[m] * passes;
+        if (bright) bright_hits_ += 1.0 / R;
+        add_arrival(hit.patch, weight, passes, bright, d);
+        for (std::size_t m = 0; m < n && !bright; ++m) arrive[m] += share[m] * passes;
       }
       for (std::size_t m = 0; m < n; ++m) all[m] += share[m];
     }
@@ -259,26 +259,32 @@ class Tracer {
            seen &= seen - 1) {
         const auto k = static_cast<std::size_t>(std::countr_zero(seen));
         const double passes = luminous_mean(problem.rays.glass_transmittance(from[k], to[k]));
-        add_arrival(source[k], weight[k] * passes, true, direction[k]);
+        add_arrival(source[k], weight[k], passes, true, direction[k]);
       }
     }
   }
 
-  void add_arrival(PatchId source, double weight, bool bright, const Vec3& d) {
-    (bright ? bright_ : others_) += weight;
+  void add_arrival(PatchId source, double weight, double passes, bool bright, const Vec3& d) {
+    if (bright) bright_seen_ += weight, bright_ += weight * passes;
+    weight *= passes;
     const std::uint16_t where = part(d);
     arrivals_.push_back({tree_.node_of_patch[source], static_cast<float>(weight), where, bright});
     if (hands_down_) add_shares(where, weight, d);
   }
 
-  /// Pairs do not know what the bundle found: together they may see a little more or less than all.
-  void fill_row() {
-    if (!(bright_ > 0)) return;
-    const double left = arriving_ - bright_;
-    const bool room_for_others = others_ > 0 && left > 0;
-    const double gain = room_for_others ? left / others_ : arriving_ / (bright_ + others_);
-    for (Arrival& a : arrivals_)
-      if (!a.bright || !room_for_others) a.weight = static_cast<float>(a.weight * gain);
+  /// All directions sum to 1. What the bright sources leave, by their better estimate, is shared by the rest of the
+  /// bundle: other patches, what escapes, what is lost.
+  void fill_row(Transport& transport) {
+    const bool rest = bright_hits_ < 1 && bright_seen_ < 1;
+    const double gain = rest ? (1 - bright_seen_) / (1 - bright_hits_) : 0;
+    const double gain_bright = rest ? 1 : 1 / bright_seen_;
+    for (Arrival& a : arrivals_) a.weight = static_cast<float>(a.weight * (a.bright ? gain_bright : gain));
+    for (const Member& m : members_) {
+      transport.E_sky.set(m.patch, transport.E_sky[m.patch] * gain);
+      transport.escapes[m.patch] = static_cast<float>(transport.escapes[m.patch] * gain);
+      transport.arrives[m.patch] = static_cast<float>(transport.arrives[m.patch] * gain + bright_ * gain_bright);
+    }
+    sky_mean_ *= gain;
   }
 
   void write(const Receiver& receiver, LinkBlock& out) {
@@ -392,7 +398,9 @@ class Tracer {
   std::array<double, kParts> part_weight_{};
   std::uint64_t key_ = 0;
   bool hands_down_ = false;
-  double area_ = 0, bright_ = 0, others_ = 0, arriving_ = 0, sky_mean_ = 0, limit_ = 0, owed_ = 0, most_owed_ = 0;
+  double bright_ = 0, bright_seen_ = 0;  ///< what arrives of bright patches, after and before glass [1]
+  double bright_hits_ = 0;               ///< share of the bundle that ended on them
+  double area_ = 0, sky_mean_ = 0, limit_ = 0, owed_ = 0, most_owed_ = 0;
 };
 
 void find_spaces(Transport& transport, const ElementTree& tree, std::span<const Receiver> receivers,

@@ -19,13 +19,13 @@ struct LinkOptions {
   std::uint64_t seed = 1;
 };
 
-/// Two estimators for the weight of p <- q, combined by the balance heuristic (Veach & Guibas 1995): R cosine rays that
+/// Two estimators for the weight of p <- q, combined by the power heuristic (Veach & Guibas 1995): R cosine rays that
 /// leave points all over p, and L pairs of a point of p with one of a bright source, chosen by light.lamps. A ray of
 /// either kind that ends on a bright patch counts
-///   w = (cos / pi) / (R cos / pi + L density),
+///   w = c own / (own^2 + other^2),   c = cos / pi, own and other: R c and L density, or the other way round;
 /// one that ends elsewhere w = 1 / R. The bright patches' weights so have the noise of pairs where these are better.
-/// The others share what the bright ones leave of all that arrives: a row of weights sums to the share of the bundle's
-/// rays that reached patches, which is exact in a closed room.
+/// What they leave of all directions is shared by the rest of the bundle: patches, sky, glass. So a row sums to 1 less
+/// what escapes or is lost, exactly.
 ///
 /// Hits, sorted in the order of the tree, are cut at its nodes from the root: a node takes all under it when
 ///   (sum of w) * (standard deviation of B over its area) <= uniform * E_p

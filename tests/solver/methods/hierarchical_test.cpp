@@ -1,0 +1,273 @@
+#include "solver/methods/hierarchical.h"
+
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "solver/form_factors/form_factor_matrix.h"
+#include "solver/methods/gauss_seidel.h"
+#include "solver/methods/path.h"
+#include "solver/model/parallel.h"
+#include "solver/model/units.h"
+#include "tests/support/unjoined_lightmap.h"
+
+namespace clerestory {
+namespace {
+
+struct Room {
+  PatchSet patches;
+  Lights lights;
+  RayScene rays{patches};
+  Problem problem{patches, rays, lights};
+  VertexLightmap map = test::unjoined_lightmap(patches);
+
+  explicit Room(PatchSet p, Lights l = {}) : patches(std::move(p)), lights(std::move(l)) {}
+  HierarchicalSolution solve(const HierarchyOptions& options = {}, const Monitor& monitor = {}) const {
+    ElementMesh mesh(patches, map);
+    return hierarchical(problem, mesh, options, monitor);
+  }
+};
+
+double mean(const PatchSet& patches, const Field& x) {
+  double sum = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) sum += patches.area[i] * x[i][0];
+  return sum / patches.total_area();
+}
+
+/// RMS difference over the area / mean of the reference, without the reference's own noise.
+double rms_error(const PatchSet& patches, const Field& E, const Solution& reference) {
+  double square = 0, noise = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    square += patches.area[i] * std::pow(E[i][0] - reference.E[i][0], 2);
+    if (reference.std_error.size() > 0) noise += patches.area[i] * std::pow(reference.std_error[i][0], 2);
+  }
+  return std::sqrt(std::max(0.0, square - noise) / patches.total_area()) / mean(patches, reference.E);
+}
+
+Solution paths(const Room& room, const PatchSet& leaves, int count) {
+  const Problem problem{leaves, room.rays, room.lights};
+  return path_trace(Illumination(problem), {Field(leaves.patch_count(), leaves.channels), {}, 0},
+                    measure_closure(problem, 16, 1), {.paths = count, .seed = 99});
+}
+
+/// A room with two blocks and a lamp 12 mm under its ceiling, black on its back.
+PatchSet lamp_room(double rho, std::size_t cells = 12) {
+  test::PatchBuilder b(rho);
+  const std::size_t n = cells, block = std::max<std::size_t>(1, cells / 4);
+  b.box({0, 0, 0}, {5.5, 0, 0}, {0, 4.5, 0}, {0, 0, 2.8}, {n, n * 9 / 11, n / 2}, true);
+  b.box({1.2, 1.0, 0.1}, {0.955, 0.296, 0}, {-0.355, 1.146, 0}, {0, 0, 1.9}, {block, block, block}, false);
+  b.box({3.6, 2.3, 0.3}, {1.221, -0.446, 0}, {0.309, 0.845, 0}, {0, 0, 0.8}, {block, block, block}, false);
+  b.material(rho, 100).rectangle({2.3, 1.9, 2.788}, {0, 0.7, 0}, {0.9, 0, 0}, 4, 4);
+  b.material(rho).rectangle({2.3, 1.9, 2.789}, {0.9, 0, 0}, {0, 0.7, 0}, 2, 2);
+  return b.build();
+}
+
+TEST(Hierarchical, AFurnaceGlowsAlikeEverywhere) {
+  for (const double rho : {0.0, 0.5, 0.99, 0.9999}) {
+    const Room room(
+        test::RoomWithBlocks{.room_cells = {6, 5, 4}, .block_cells = 2, .reflectance = rho, .exitance = 10}.build());
+    const HierarchicalSolution h = room.solve({.residual = 1e-9});
+    const double exact = 10 / (1 - rho);
+    for (std::size_t i = 0; i < h.elements.patch_count(); ++i)
+      ASSERT_NEAR(h.solution.B[i][0], exact, 1e-5 * exact) << "rho " << rho << ", residual over 1 - rho";
+    EXPECT_NEAR(h.solution.energy.imbalance(), 0, 1e-5);
+    EXPECT_EQ(h.elements.patch_count(), room.patches.patch_count()) << "nothing is worth halving";
+  }
+}
+
+TEST(Hierarchical, ClosedRoomsKeepTheirEnergyAndMean) {
+  for (const double rho : {0.3, 0.6, 0.9}) {
+    const Room room(lamp_room(rho, 16));
+    const HierarchicalSolution h = room.solve();
+    double emitted = 0;
+    for (std::size_t i = 0; i < room.patches.patch_count(); ++i) emitted += room.patches.area[i] * room.patches.M[i][0];
+    // One reflectance: mean E = emitted / ((1 - rho) A), and the imbalance is what the mean is off.
+    const double exact = emitted / ((1 - rho) * room.patches.total_area());
+    EXPECT_NEAR(h.solution.energy.imbalance(), 0, 1.2e-3) << "rho " << rho;  // its standard error here is 5e-4
+    EXPECT_NEAR(mean(h.elements, h.solution.E), exact, 1.2e-3 * exact) << "rho " << rho;
+    EXPECT_NEAR(h.solution.energy.emitted, emitted, 1e-9 * emitted);
+  }
+}
+
+TEST(Hierarchical, ANearlyWhiteRoomConvergesInFewSweeps) {
+  test::PatchBuilder b(0.9999);
+  b.box({0, 0, 0}, {5, 0, 0}, {0, 4, 0}, {0, 0, 3}, {8, 8, 6}, true);
+  b.material(0.9999, 10).rectangle({2, 2, 2.5}, {0, 0.5, 0}, {0.5, 0, 0}, 2, 2);
+  b.material(0.9999).rectangle({2, 2, 2.502}, {0.5, 0, 0}, {0, 0.5, 0}, 2, 2);
+  const Room room(b.build());
+  const HierarchicalSolution h = room.solve();
+  EXPECT_LT(h.solution.iterations, 40);
+  EXPECT_LE(h.solution.residual, 1e-5);
+}
+
+TEST(Hierarchical, TheSameBitsForOneAndTwoThreads) {
+  const Room room(lamp_room(0.5));
+  const HierarchicalSolution two = room.solve({.bundle_rays = 64, .lamp_rays = 16});
+  set_thread_count(1);
+  const HierarchicalSolution one = room.solve({.bundle_rays = 64, .lamp_rays = 16});
+  set_thread_count(0);
+  EXPECT_EQ(one.solution.E.value, two.solution.E.value);
+  EXPECT_EQ(one.solution.B.value, two.solution.B.value);
+  EXPECT_EQ(one.solution.energy.absorbed, two.solution.energy.absorbed);
+}
+
+TEST(Hierarchical, ErrorFallsWithTheRaysAtLeastAsOneOverTheRoot) {
+  const Room room(lamp_room(0.5, 8));
+  const Solution reference = room.solve({.bundle_rays = 8192, .lamp_rays = 8192, .tolerance = 1e9, .seed = 7}).solution;
+  std::vector<double> error;
+  for (const int rays : {32, 512})
+    error.push_back(rms_error(
+        room.patches, room.solve({.bundle_rays = rays, .lamp_rays = rays, .tolerance = 1e9}).solution.E, reference));
+  // Sixteen times the rays: a quarter of the error or less. Sources merged to nodes leave a floor below 0.3 %.
+  EXPECT_LT(error[1], error[0] / 4 + 0.003);
+}
+
+TEST(Hierarchical, ATighterToleranceBringsTheWholeFieldNearerToTheTruth) {
+  const Room room(lamp_room(0.5, 6));
+  // The truth on elements that are finer than what either run makes: E of a point is that of the element it lies in.
+  double last = 1;
+  for (const double tolerance : {1e9, 0.3, 0.05}) {
+    const HierarchicalSolution h =
+        room.solve({.bundle_rays = 1024, .lamp_rays = 256, .tolerance = tolerance, .shortest_edge = 0.1});
+    ElementMesh fine(room.patches, room.map);
+    for (int k = 0; k < 5; ++k) fine.split(fine.leaves());
+    const PatchSet points = fine.leaf_patches();
+    static const Solution truth = paths(room, points, 256);
+    Solution shown = truth;
+    for (std::size_t i = 0; i < points.patch_count(); ++i) {
+      const auto c = points.corner_positions(PatchId{i});
+      const Vec3 x = (c[0] + c[1] + c[2]) / 3;
+      const Hit hit = room.rays.first_hit(h.elements, {x + points.normal[i] * 1e-4, -points.normal[i]});
+      ASSERT_TRUE(hit.patch.valid());
+      shown.E.set(i, h.solution.E[hit.patch]);
+    }
+    const double error = rms_error(points, shown.E, truth);
+    EXPECT_LT(error, last) << "tolerance " << tolerance << ", " << h.elements.patch_count() << " elements";
+    last = error;
+  }
+  EXPECT_LT(last, 0.10);
+}
+
+TEST(Hierarchical, ElementsAgreeWithPaths) {
+  const Room room(lamp_room(0.5));
+  const HierarchicalSolution h = room.solve();
+  const Solution reference = paths(room, h.elements, 1024);
+  EXPECT_LT(rms_error(h.elements, h.solution.E, reference), 0.03);
+  EXPECT_NEAR(mean(h.elements, h.solution.E), mean(h.elements, reference.E), 0.004 * mean(h.elements, reference.E));
+}
+
+TEST(Hierarchical, ClassicRefinementAndTheFullMatrixAgree) {
+  test::PatchBuilder b(0.6);
+  b.box({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {4, 4, 4}, true);
+  b.material(0.3, 5).box({1, 1, 1}, {0.8, 0, 0}, {0, 0.8, 0}, {0, 0, 0.8}, {2, 2, 2}, false);
+  const Room room(b.build());
+  const Solution exact =
+      gauss_seidel(room.patches, form_factor_matrix(room.patches, room.rays), Field(room.patches.patch_count(), 1));
+  double last = 1;
+  for (const double tolerance : {30.0, 1.0, 0.03}) {
+    const HierarchicalSolution h = room.solve(
+        {.oracle = HierarchyOptions::Oracle::bf, .tolerance = tolerance, .shortest_edge = 10});  // none is halved
+    ASSERT_EQ(h.elements.patch_count(), room.patches.patch_count());
+    const double error = rms_error(room.patches, h.solution.E, exact);
+    EXPECT_LT(error, last) << "tolerance " << tolerance;
+    last = error;
+  }
+  EXPECT_LT(last, 0.03);  // 16 pairs a link
+  const HierarchicalSolution bundles = room.solve({.bundle_rays = 1024, .tolerance = 1e9});
+  EXPECT_LT(rms_error(room.patches, bundles.solution.E, exact), 0.02);
+}
+
+TEST(Hierarchical, TheCeilingSpotAboveAnUplightIsFoundByItself) {
+  // All light comes from a small uplight that nobody sees but the ceiling.
+  test::PatchBuilder b(0.7);
+  b.box({0, 0, 0}, {5, 0, 0}, {0, 4, 0}, {0, 0, 2.8}, {12, 10, 7}, true);
+  b.box({2.3, 1.8, 2.3}, {0.4, 0, 0}, {0, 0.4, 0}, {0, 0, 0.05}, {2, 2, 1}, false);
+  b.material(0.1, 2000).rectangle({2.4, 1.9, 2.3505}, {0.2, 0, 0}, {0, 0.2, 0}, 2, 2);
+  const Room room(b.build());
+  const HierarchicalSolution h = room.solve({.shortest_edge = 0.05});
+  EXPECT_GT(h.elements.patch_count(), room.patches.patch_count()) << "the spot's edge is worth halving";
+  const Solution reference = paths(room, h.elements, 1024);
+  EXPECT_LT(rms_error(h.elements, h.solution.E, reference), 0.06);
+  EXPECT_NEAR(mean(h.elements, h.solution.E), mean(h.elements, reference.E), 0.01 * mean(h.elements, reference.E));
+}
+
+TEST(Hierarchical, ASunPatchLightsTheRoomAndIsHalvedAlongItsEdge) {
+  // A room with a hole of 0.5 m in its ceiling, sun straight through it: 0.25 m2 x 1000 W/m2 x cos.
+  test::PatchBuilder b(0.5);
+  const std::size_t n = 8;
+  b.rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, n, n);
+  b.rectangle({0, 0, 0}, {0, 4, 0}, {0, 0, 3}, n, 6).rectangle({4, 0, 0}, {0, 0, 3}, {0, 4, 0}, 6, n);
+  b.rectangle({0, 0, 0}, {0, 0, 3}, {4, 0, 0}, 6, n).rectangle({0, 4, 0}, {4, 0, 0}, {0, 0, 3}, n, 6);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < n; ++i)
+      if (i != 4 || j != 4) {
+        const double x = 0.5 * static_cast<double>(i), y = 0.5 * static_cast<double>(j);
+        b.rectangle({x, y, 3}, {0, 0.5, 0}, {0.5, 0, 0});
+      }
+  Sun sun;
+  sun.direction = normalized({0.1, 0.23, 1});
+  sun.normal_irradiance = Spectrum(1000);
+  Lights lights;
+  lights.suns.push_back(sun);
+  const Room room(b.build(), lights);
+  const HierarchicalSolution h = room.solve({.shortest_edge = 0.05});
+  double direct = 0;
+  for (std::size_t i = 0; i < h.elements.patch_count(); ++i) direct += h.elements.area[i] * h.small_lights[i][0];
+  const double through = 0.25 * 1000 * sun.direction.z;
+  EXPECT_NEAR(direct, through, 0.01 * through) << "straddling elements keep their flux";
+  EXPECT_GT(h.elements.patch_count(), room.patches.patch_count() + 50);
+  const Solution reference = paths(room, h.elements, 1024);
+  Field indirect = h.solution.E;
+  EXPECT_NEAR(mean(h.elements, indirect), mean(h.elements, reference.E), 0.01 * mean(h.elements, reference.E));
+  // Where the sun does not shine.
+  double error = 0, level = 0;
+  for (std::size_t i = 0; i < h.elements.patch_count(); ++i)
+    if (h.small_lights[i][0] == 0) {
+      const double a = h.elements.area[i], noise = reference.std_error[i][0];
+      error += a * (std::pow(h.solution.E[i][0] - reference.E[i][0], 2) - noise * noise);
+      level += a * reference.E[i][0];
+    }
+  EXPECT_LT(std::sqrt(std::max(0.0, error) * h.elements.total_area()) / level, 0.06);
+  EXPECT_NEAR(h.solution.energy.imbalance(), 0, 5e-3);
+}
+
+TEST(Hierarchical, AnOpenFloorTakesTheWholeSky) {
+  test::PatchBuilder b(0.5);
+  b.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, 4);
+  Lights lights;
+  lights.sky = Sky{};
+  lights.sky->model = SkyModel::uniform;
+  lights.sky->horizontal_irradiance = Spectrum(100);
+  const HierarchicalSolution h = Room(b.build(), lights).solve();
+  for (std::size_t i = 0; i < h.elements.patch_count(); ++i) EXPECT_NEAR(h.solution.E[i][0], 100, 1e-9 * 100);
+  EXPECT_NEAR(h.solution.energy.emitted, 100, 1e-9 * 100);
+  EXPECT_NEAR(h.solution.energy.escaped, 50, 1e-6 * 50);
+  EXPECT_NEAR(h.solution.energy.imbalance(), 0, 1e-6);
+}
+
+TEST(Hierarchical, StoppedBeforeItsFirstRoundItGivesTheAmbientEstimateAndSaysSo) {
+  const Room room(lamp_room(0.5, 6));
+  const std::atomic<bool> stop{true};
+  Monitor monitor;
+  monitor.interrupted = &stop;
+  const HierarchicalSolution h = room.solve({}, monitor);
+  EXPECT_EQ(h.solution.stop, StopReason::interrupted);
+  ASSERT_EQ(h.solution.E.size(), h.elements.patch_count());
+  EXPECT_GT(mean(h.elements, h.solution.E), 0);
+  ASSERT_FALSE(h.solution.log.empty());
+  EXPECT_NE(h.solution.log[0].find("ambient"), std::string::npos) << h.solution.log[0];
+}
+
+TEST(Hierarchical, WithADeadlineThatIsPastItStillHasALight) {
+  const Room room(lamp_room(0.5, 6));
+  Monitor monitor;
+  monitor.deadline = std::chrono::steady_clock::now();
+  const HierarchicalSolution h = room.solve({}, monitor);
+  EXPECT_EQ(h.solution.stop, StopReason::time_limit);
+  EXPECT_GT(mean(h.elements, h.solution.E), 0);
+}
+
+}  // namespace
+}  // namespace clerestory

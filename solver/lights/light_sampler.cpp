@@ -174,7 +174,12 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
   std::array<Spectrum, 16> open;
   unsigned queued = 0;
   const auto flush = [&] {
-    for (unsigned seen = queued ? rays.visible16(segments, static_cast<std::uint16_t>((1u << queued) - 1)) : 0; seen;
+    if (queued < 3) {  // single rays cost less than a packet that is nearly empty
+      for (unsigned k = 0; k < queued; ++k) E += open[k] * rays.transmittance(p, end[k]);
+      queued = 0;
+      return;
+    }
+    for (unsigned seen = rays.visible16(segments, static_cast<std::uint16_t>((1u << queued) - 1)); seen;
          seen &= seen - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(seen));
       E += open[k] * rays.glass_transmittance(p, end[k]);

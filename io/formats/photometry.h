@@ -1,0 +1,22 @@
+#pragma once
+// Photometric files of luminaires, by extension: IESNA LM-63 (.ies) and EULUMDAT (.ldt).
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "solver/model/photometric_web.h"
+
+namespace clerestory {
+
+/// warnings  what is odd about the file, each with its name; among them the flux that the file declares when it differs
+///           from the integral of its intensities by more than 5 %.
+/// throws    InputError with file, line and reason, also when the extension is unknown.
+PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings);
+
+/// What all formats share: mirrors the planes of web.symmetry all round, so that `horizontal` of type C goes from 0 to
+/// 360 degrees, and warns about angles and fluxes that are odd.
+/// declared  flux that the intensities should add up to [lm], 0 when the file does not say; at_most: or less.
+void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vector<std::string>& warnings);
+
+}  // namespace clerestory

@@ -38,9 +38,11 @@ std::string error_line(const MeasuredError& e) {
 
 void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.method = s.solution.method;
-  r.counts.triangles = s.patches.triangle_count();
+  r.counts.triangles = s.repairs.triangles;
   r.counts.elements = s.patches.patch_count();
   r.counts.dark_sides = s.lit_sides.dark_sides;
+  r.counts.clusters = s.solution.clusters;
+  r.counts.links = s.solution.links;
   r.counts.points = s.lightmap.position.size();
   r.counts.sensors = s.sensor_E.size();
   r.counts.rays = s.solution.rays;
@@ -52,6 +54,14 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.error = figures_of(s.error);
   r.error_sensors = figures_of(s.error_sensors);
   r.left_out = what_was_left_out(scene, s);
+}
+
+void split_by_stage(RunReport::Seconds& s, const Console& console) {
+  const double vertices = console.seconds_in("vertices");
+  s.direct = console.seconds_in("direct");
+  s.refine = console.seconds_in("refine") + console.seconds_in("links");
+  s.reconstruct += vertices;
+  s.gather -= s.direct + s.refine + vertices;
 }
 
 void say_summary(const RunReport& r, const Solved& s, Console& console) {

@@ -25,6 +25,10 @@ struct Solved {
 
 void fill_report(RunReport& report, const Scene& scene, const Solved& solved);
 
+/// Takes what the solver's stages took out of `gather`, which holds the whole solve, and gives it to direct, refine and
+/// reconstruct: what is left was iterating.
+void split_by_stage(RunReport::Seconds& seconds, const Console& console);
+
 /// Elements, time, energy balance and measured error, as lines on standard output.
 void say_summary(const RunReport& report, const Solved& solved, Console& console);
 

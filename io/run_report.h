@@ -23,8 +23,8 @@ struct RunReport {
   std::vector<Figure> settings;  ///< every setting in force that the result depends on
   int threads = 0;               ///< no result depends on it
   struct Counts {
-    std::size_t triangles = 0;   ///< of the mesh, each with two sides
-    std::size_t elements = 0;    ///< sides that take part
+    std::size_t triangles = 0;   ///< of the mesh, before any is halved, each with two sides
+    std::size_t elements = 0;    ///< sides that take part, or what they were halved into
     std::size_t dark_sides = 0;  ///< sides left out because no light can reach them
     std::size_t points = 0, clusters = 0, links = 0, sensors = 0;
     unsigned long long rays = 0;

@@ -174,7 +174,8 @@ void write_result(const std::filesystem::path& file, const PatchSet& patches, co
   add_light(data->GetCellData(), solution.E, solution.B, daylight_reference);
   if (!solution.std_error.value.empty()) add_field(data->GetCellData(), "irradiance_std_error", solution.std_error);
   add_indices_of_patches(data->GetCellData(), patches);
-  add_indices(data->GetCellData(), "level", patches.patch_count(), [](std::size_t) { return 0; });
+  add_indices(data->GetCellData(), "level", patches.patch_count(),
+              [&](std::size_t i) { return patches.level.empty() ? 0 : patches.level[i]; });
   add_light(data->GetPointData(), lightmap.E, radiosity_at_points(patches, lightmap), daylight_reference);
   if (!lightmap.std_error.value.empty()) add_field(data->GetPointData(), "irradiance_std_error", lightmap.std_error);
   add_field_data(data, patches, report);

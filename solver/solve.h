@@ -2,22 +2,13 @@
 // Problem -> Solution, by the method asked for.
 
 #include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
 
+#include "solver/model/method.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
 #include "solver/problem.h"
 
 namespace clerestory {
-
-enum class Method { hierarchical, progressive, gauss_seidel, jacobi, path };
-enum class Accuracy { draft, standard, fine };
-
-/// Names as typed by users, in the order of the enumerators.
-inline constexpr std::string_view kMethodNames[] = {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"};
-inline constexpr std::string_view kAccuracyNames[] = {"draft", "standard", "fine"};
 
 struct SolveOptions {
   Method method = Method::hierarchical;

@@ -84,7 +84,6 @@ std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, 
   warn_about_places(problem, scene, sensors, console);
   lap.add_to(seconds.build);
 
-  const double direct_before = console.seconds_in("direct");
   VertexLightmap lightmap = make_lightmap(patches);
   Solution solution;
   if (settings.solve.method == Method::hierarchical) {
@@ -98,9 +97,6 @@ std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, 
     if (settings.solve.accuracy != Accuracy::draft && !monitor.should_stop())
       solution.rays += gather_at_points(problem, solution, lightmap, settings.solve, monitor);
   }
-  const double direct = console.seconds_in("direct") - direct_before;
-  seconds.direct += direct;
-  seconds.gather -= direct;
   lap.add_to(seconds.gather);
 
   PointIrradiance at_sensors = gather_all_sensors(problem, solution, sensors, settings.solve, monitor);
@@ -109,9 +105,11 @@ std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, 
   lap.add_to(seconds.reconstruct);
 
   std::optional<MeasuredError> error, error_sensors;
-  if (!monitor.should_stop()) error = if_measured(measure_error(problem, lightmap, settings.solve, solution.rays, monitor));
+  if (!monitor.should_stop())
+    error = if_measured(measure_error(problem, lightmap, settings.solve, solution.rays, monitor));
   if (!monitor.should_stop() && !sensors.empty())
-    error_sensors = if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, solution.rays, monitor));
+    error_sensors =
+        if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, solution.rays, monitor));
   if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
   lap.add_to(seconds.measure);
   return Solved{std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),
@@ -212,6 +210,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
     return kInterrupted;
   }
   const Solved& solved = *result;
+  split_by_stage(report.seconds, console);
   for (const std::string& line : solved.solution.log) console.note(line);
 
   Lap writing;
@@ -244,8 +243,9 @@ void add_solve_command(CLI::App& program, Task& task) {
   command.add_option("-o,--output", arguments->output, "the result, for ParaView")->type_name("OUT.vtp")->required();
   require_extension(command, "--output", ".vtp");
   SolveArguments& s = arguments->solve;
-  add_checked_word(command, "--method", s.method, problem_with_method,
-                   "hierarchical, progressive, gauss-seidel, jacobi, or path, the unbiased reference (default: hierarchical)");
+  add_checked_word(
+      command, "--method", s.method, problem_with_method,
+      "hierarchical, progressive, gauss-seidel, jacobi, or path, the unbiased reference (default: hierarchical)");
   add_checked_word(command, "--accuracy", s.accuracy, problem_with_accuracy,
                    "draft, standard or fine (default: standard)");
   add_positive_option(command, "--target-error", s.target_error, "SHARE",

@@ -16,6 +16,7 @@
 #include "io/text.h"
 #include "io/unit_vector.h"
 #include "solver/model/error.h"
+#include "solver/model/method.h"
 
 namespace clerestory {
 namespace {
@@ -83,11 +84,9 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
 }
 
 SolverSettings read_settings(const JsonObject& object) {
-  constexpr std::string_view kMethods[] = {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"};
-  constexpr std::string_view kAccuracies[] = {"draft", "standard", "fine"};
   SolverSettings settings;
-  settings.method = object.choice("method", kMethods);
-  settings.accuracy = object.choice("accuracy", kAccuracies);
+  settings.method = object.choice("method", kMethodNames);
+  settings.accuracy = object.choice("accuracy", kAccuracyNames);
   settings.max_element =
       object.number("max_element", {.low = 0, .low_allowed = false, .advice = "it is an edge in metres"});
   settings.target_error =

@@ -212,6 +212,7 @@ PatchSet ElementMesh::leaf_patches() const {
     out.splits[e] = {elements_[e].first_half, SplitNode::kNone, elements_[e].edge};
   out.corners.resize(n), out.side_material.resize(n), out.side_surface.resize(n);
   out.triangle.resize(n), out.side.resize(n), out.area.resize(n), out.normal.resize(n);
+  out.level.resize(n);
   if (!patches_.joined.empty()) out.joined.resize(n);
   out.rho = out.M = Field(n, patches_.channels);
   for (std::size_t i = 0; i < n; ++i) {
@@ -229,6 +230,7 @@ PatchSet ElementMesh::leaf_patches() const {
     out.side[i] = side;
     out.area[i] = std::ldexp(patches_.area[e.patch], -e.level);  // halves are halves
     out.normal[i] = patches_.normal[e.patch];
+    out.level[i] = e.level;
     out.rho.set(i, patches_.rho[e.patch]);
     out.M.set(i, patches_.M[e.patch]);
   }

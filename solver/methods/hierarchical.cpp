@@ -161,6 +161,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
     from_sky += leaves.area[i] * luminous_mean(transport.E_sky[i]);
     glowing += leaves.area[i] * luminous_mean(leaves.M[i]);
   }
+  monitor.report("gather", 0);
   Solution& s = out.solution;
   s = balance(leaves, tree, transport, E_direct, std::move(guess), quality.residual, monitor);
   s.method = "hierarchical";
@@ -232,6 +233,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     }
     const Problem on_leaves{last->result.elements, problem.rays, problem.lights};
     const Field glow = above_ground(last->result.elements, last->result.solution.B, *last);
+    monitor.report("refine", (number + 0.5) / kMostRounds);
     const RefineOptions how{options.tolerance, options.shortest_edge, options.most_elements, options.seed};
     const std::size_t halved = refine(mesh, Illumination(on_leaves, glow), last->result.solution.E,
                                       last->result.solution.B, how, rays, monitor);

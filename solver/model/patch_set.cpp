@@ -42,6 +42,7 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   p.side.clear();
   p.area.clear();
   p.normal.clear();
+  p.level.clear();
   p.side_patch.assign(p.triangle_count(), {PatchId{}, PatchId{}});
   for (std::size_t t = 0; t < p.triangle_count(); ++t) {
     if (p.is_glass(TriangleId{t})) continue;

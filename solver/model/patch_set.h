@@ -51,6 +51,7 @@ struct PatchSet {
   std::vector<Vec3> normal;          ///< N, unit, away from the surface on the patch's side
   Field rho;                         ///< N, reflectance [1]
   Field M;                           ///< N, exitance [W/m2]
+  std::vector<std::uint8_t> level;   ///< N, halvings since the patch; empty: none was halved
 
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< by SurfaceId

@@ -1,5 +1,6 @@
 // clerestory solve, from the outside: files, exit codes, promises.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -122,6 +123,34 @@ TEST(Solve, TheReportHasEveryField) {
   const double emitted = report["energy"]["emitted"];
   EXPECT_NEAR(report["energy"]["absorbed"].get<double>() + report["energy"]["escaped"].get<double>(), emitted,
               0.05 * emitted);
+}
+
+TEST(Solve, TheHierarchyIsCountedAndEveryStageTimed) {
+  const TempFolder folder;
+  const ProgramRun run = solve(shipped_scene("cornell_box.json"), folder / "out.vtp",
+                               {"--accuracy", "draft", "--report", folder / "report.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json report = Json::parse(read_text(folder / "report.json"));
+  const ResultFile result = read_result(folder / "out.vtp");
+  const auto& level = result.of_cells.at("level").values;
+  EXPECT_EQ(*std::min_element(level.begin(), level.end()), 0);
+  EXPECT_GE(*std::max_element(level.begin(), level.end()), 2);
+  // A patch and all its halves at level l have 2^l of its area: as many whole patches as sides that took part.
+  double patches = 0;
+  for (const double l : level) patches += std::exp2(-l);
+  const Json& counts = report["counts"];
+  EXPECT_EQ(patches, 2 * counts["triangles"].get<double>() - counts["dark_sides"].get<double>());
+  EXPECT_EQ(counts["elements"], level.size());
+  EXPECT_GT(counts["clusters"], 10);
+  EXPECT_GT(counts["links"], counts["elements"]);
+
+  const Json& seconds = report["seconds"];
+  double sum = 0;
+  for (const auto& [stage, time] : seconds.items()) {
+    if (stage != "total") sum += time.get<double>();
+    if (stage != "direct") EXPECT_GT(time, 0) << stage;  // no sun and no luminaires here
+  }
+  EXPECT_NEAR(sum, seconds["total"], 0.05 + 0.05 * sum);
 }
 
 TEST(Solve, ThreadsNeverChangeABit) {

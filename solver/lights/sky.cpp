@@ -10,8 +10,28 @@ SkyRadiance::SkyRadiance(const Lights& lights) {
   constexpr double pi = std::numbers::pi;
   const Sky& sky = *lights.sky;
   exists_ = true;
-  model_ = sky.model;
-  zenith_ = sky.horizontal_irradiance * (model_ == SkyModel::uniform ? 1 / pi : 9 / (7 * pi));
+  switch (sky.model) {
+    case SkyModel::uniform:
+      kind_ = Kind::uniform;
+      zenith_ = sky.horizontal_irradiance / pi;
+      break;
+    case SkyModel::cie_overcast:
+      kind_ = Kind::overcast;
+      zenith_ = sky.horizontal_irradiance * (9 / (7 * pi));
+      break;
+    case SkyModel::image:
+      kind_ = Kind::image;
+      image_ = sky.image;
+      image_has_ground_ = sky.image_has_ground;
+      break;
+    case SkyModel::cie_clear:
+    case SkyModel::cie_general:
+    case SkyModel::perez:
+      kind_ = Kind::shaped;
+      shape_ = SkyShapeTable(sky.shape, sky.sun);
+      zenith_ = sky.horizontal_irradiance / horizontal_integral(sky.shape, std::asin(std::clamp(sky.sun.z, -1.0, 1.0)));
+      break;
+  }
   Spectrum horizontal = sky.horizontal_irradiance;
   for (const Sun& sun : lights.suns) horizontal += sun.normal_irradiance * std::max(0.0, sun.direction.z);
   ground_ = horizontal * (sky.ground_reflectance / pi);

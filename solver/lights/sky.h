@@ -1,6 +1,9 @@
 #pragma once
 // Radiance of the sky and of the virtual ground below it.
 
+#include <memory>
+
+#include "solver/lights/sky_shape_table.h"
 #include "solver/model/light_spec.h"
 
 namespace clerestory {
@@ -8,7 +11,9 @@ namespace clerestory {
 /// Radiance [W/(m2 sr)] from the unit direction d, seen from inside the scene; z is up.
 ///   above the horizon  L = Lz f(d),  scaled so that the integral of L cos(zenith angle) is the horizontal irradiance
 ///   below it           L = ground_reflectance / pi * (horizontal irradiance of sky and sun)
-/// f = 1 (uniform, Lz = E / pi) or (1 + 2 sin(elevation)) / 3 (CIE overcast, Moon & Spencer, Lz = 9 E / (7 pi)).
+/// f = 1 (uniform, Lz = E / pi), (1 + 2 sin(elevation)) / 3 (CIE overcast, Moon & Spencer, Lz = 9 E / (7 pi)), or
+/// the sky's shape, whose integral is taken by quadrature when this is made (2 ms). An image is shown as it is.
+/// Thread safe. A look-up takes 1 to 15 ns.
 class SkyRadiance {
  public:
   explicit SkyRadiance(const Lights& lights);
@@ -16,14 +21,29 @@ class SkyRadiance {
   bool dark() const { return !exists_; }
   Spectrum operator()(const Vec3& d) const {
     if (!exists_) return Spectrum(0.0);
-    if (d.z < 0) return ground_;
-    return model_ == SkyModel::uniform ? zenith_ : zenith_ * ((1 + 2 * d.z) / 3);
+    if (d.z < 0 && !image_has_ground_) return ground_;
+    switch (kind_) {
+      case Kind::uniform:
+        return zenith_;
+      case Kind::overcast:
+        return zenith_ * ((1 + 2 * d.z) / 3);
+      case Kind::shaped:
+        return zenith_ * shape_(d);
+      case Kind::image:
+        return image_->radiance(d);
+    }
+    return Spectrum(0.0);
   }
 
  private:
-  bool exists_ = false;
-  SkyModel model_ = SkyModel::uniform;
-  Spectrum zenith_, ground_;
+  enum class Kind { uniform, overcast, shaped, image };
+
+  bool exists_ = false, image_has_ground_ = false;
+  Kind kind_ = Kind::uniform;
+  Spectrum zenith_;  ///< factor of f; the radiance at the zenith where f is 1 there
+  Spectrum ground_;
+  SkyShapeTable shape_;
+  std::shared_ptr<const SkyImage> image_;
 };
 
 }  // namespace clerestory

@@ -1,11 +1,14 @@
 #pragma once
 // Light that does not come from surfaces of the model.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "solver/model/channels.h"
+#include "solver/model/sky_image.h"
+#include "solver/model/sky_shape.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
@@ -27,13 +30,17 @@ struct SpotLuminaire {
   double inner_angle = 0, outer_angle = 0;  ///< half-angles [rad]
 };
 
-enum class SkyModel { uniform, cie_overcast };
+enum class SkyModel { uniform, cie_overcast, cie_clear, cie_general, perez, image };
 
 /// Sky of luminance distribution `model`, scaled to a horizontal irradiance; virtual ground below the horizon.
 struct Sky {
   SkyModel model = SkyModel::cie_overcast;
-  Spectrum horizontal_irradiance;   ///< of the sky alone, on an open horizontal plane [W/m2]
-  double ground_reflectance = 0.2;  ///< of the virtual ground below the horizon [1]
+  Spectrum horizontal_irradiance;           ///< of the sky alone, on an open horizontal plane [W/m2]
+  double ground_reflectance = 0.2;          ///< of the virtual ground below the horizon [1]
+  SkyShape shape{};                         ///< of cie_clear, cie_general and perez
+  Vec3 sun{0, 0, 1};                        ///< unit, to the sun that the shape is bright around
+  std::shared_ptr<const SkyImage> image{};  ///< of model image, in the radiance that it shows
+  bool image_has_ground = false;            ///< the lower half of the image takes the place of the virtual ground
 };
 
 /// Sun: a disc of 0.533 degrees of uniform radiance.

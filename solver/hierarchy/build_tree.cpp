@@ -10,9 +10,10 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kDimensions = 7;  // place, normal, brightness
-constexpr float kWeight = 0.4f;         // of normals and brightness against place
-constexpr std::size_t kTogether = 4;    // patches in a cluster that is not split
+constexpr std::size_t kDimensions = 7;           // place, normal, brightness
+constexpr float kNormal = 0.3f, kBright = 0.4f;  // weights against place
+constexpr std::size_t kTogether = 4;             // patches in a cluster that is not split
+constexpr std::size_t kFew = 256;                // patches that are split at a gap
 
 /// A patch as clusters see it.
 struct Item {
@@ -137,7 +138,7 @@ class Builder {
     std::size_t widest = 0;
     float most = -1;
     for (std::size_t d = 0; d < kDimensions; ++d) {
-      const float spread = (high[d] - low[d]) * (d < 3 ? 1 : kWeight * size);
+      const float spread = (high[d] - low[d]) * (d < 3 ? 1 : (d < 6 ? kNormal : kBright) * size);
       if (spread > most) most = spread, widest = d;
     }
     const auto at = [&](std::size_t k) { return items_.begin() + static_cast<std::ptrdiff_t>(k); };
@@ -148,10 +149,20 @@ class Builder {
       if (middle > begin && middle < end) return middle;
     }
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(at(begin), at(middle), at(end), [&](const Item& a, const Item& b) {
+    const auto before = [&](const Item& a, const Item& b) {
       return a.at[widest] < b.at[widest] || (a.at[widest] == b.at[widest] && a.root < b.root);
-    });
-    return middle;
+    };
+    if (end - begin > kFew) {
+      std::nth_element(at(begin), at(middle), at(end), before);
+      return middle;
+    }
+    // Between things, not through them.
+    std::sort(at(begin), at(end), before);
+    std::size_t best = middle;
+    const auto gap = [&](std::size_t k) { return items_[k].at[widest] - items_[k - 1].at[widest]; };
+    for (std::size_t k = begin + (end - begin + 7) / 8; k <= end - (end - begin + 7) / 8; ++k)
+      if (gap(k) > 1.01f * gap(best)) best = k;
+    return best;
   }
 
   const PatchSet& patches_;

@@ -9,9 +9,10 @@
 
 namespace clerestory {
 
-/// The tree over the leaves of `patches`. A cluster is split in two at the median of what spreads most among its
-/// patches: place, normal (as 0.4 of the cluster's size) and the logarithm of brightness (likewise; split in the middle
-/// of its range, so that lamps and lit spots stand apart). Up to four patches are left together.
+/// The tree over the leaves of `patches`. A cluster is split in two across what spreads most among its patches: place,
+/// normal (as 0.3 of the cluster's size) and the logarithm of brightness (0.4; split in the middle of its range, so
+/// that lamps and lit spots stand apart). Many are split at the median, up to 256 at the widest gap near it, so that
+/// small things stay whole. Up to four patches are left together.
 ///
 /// B      N x channels, radiosity known so far [W/m2]; decides shape only.
 /// Cost   O(n log n), 0.8 s and 150 MB for 2 million leaves.

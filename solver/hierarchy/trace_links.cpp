@@ -20,7 +20,8 @@ namespace {
 constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92;
 constexpr double kMostOwed = 0.1;  // of the limit for one link: a row may not drift by more while it is cut
 constexpr std::uint32_t kMostMembers = 32;
-constexpr std::size_t kParts = 32;  // of the sphere
+constexpr int kZones = 6, kSectors = 12;  // parts of the sphere
+constexpr std::size_t kParts = kZones * kSectors;
 constexpr std::size_t kReceiversInBlock = 64;
 constexpr std::size_t kNeighbours = 8;  // hits of a receiver that tell which space it is in
 
@@ -50,11 +51,12 @@ std::vector<Receiver> choose_receivers(const ElementTree& tree, const PatchSet& 
   return receivers;
 }
 
-/// Parts of the sphere that a cluster tells apart: 4 zones of equal height, 8 sectors.
+/// Parts of the sphere that a cluster tells apart: zones of equal height in equal sectors.
 std::uint16_t part_of_sphere(const Vec3& d) {
   const double turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
-  const int zone = std::clamp(static_cast<int>((d.z + 1) * 2), 0, 3), sector = static_cast<int>(turn * 8) & 7;
-  return static_cast<std::uint16_t>(zone * 8 + sector);
+  const int zone = std::clamp(static_cast<int>((d.z + 1) / 2 * kZones), 0, kZones - 1);
+  const int sector = std::clamp(static_cast<int>(turn * kSectors), 0, kSectors - 1);
+  return static_cast<std::uint16_t>(zone * kSectors + sector);
 }
 
 /// Points of a bundle, of place and direction: a net in four dimensions, made once. Each receiver shifts it by its own

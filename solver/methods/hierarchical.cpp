@@ -23,6 +23,9 @@ constexpr int kMostRounds = 4;              // of coarse solves before the last 
 constexpr double kWorthAnother = 1.3;       // growth of the leaves that makes a coarse solve on them worth its rays
 constexpr double kReceivers = 200'000;      // faces finer than this share of the area receive in clusters
 constexpr double kStakeByTolerance = 1e-4;  // flux at stake of `bf`, as a share of tolerance times all emitted flux
+/// Below this much memory of links [bytes] every hit keeps a link of its own: nodes hide what is darker or brighter in
+/// them than was known when the links were made, and a room lit by a spot on its ceiling loses 1 % by that.
+constexpr double kLinksToSpare = 256e6;
 constexpr double kGroundLevel = 0.1;        // share of a space's area that is no brighter than its ground level
 
 /// Quality of one round: thresholds fall from round to round.
@@ -135,6 +138,8 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   const ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
+  const double most_links = static_cast<double>(n) * (quality.links.bundle_rays + quality.links.lamp_rays);
+  if (most_links * sizeof(Link) < kLinksToSpare) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
   Transport transport;
   if (options.oracle == HierarchyOptions::Oracle::error) {

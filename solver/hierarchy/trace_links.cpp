@@ -362,7 +362,7 @@ class Tracer {
       if (nodes_) light += arrivals_[k].weight * nodes_->mean[arrivals_[k].node];
     }
     bool uniform = tree_.is_leaf(v);
-    if (!uniform && nodes_ && weight * nodes_->deviation[v] <= limit_) {
+    if (!uniform && limit_ > 0 && weight * nodes_->deviation[v] <= limit_) {
       const double more = owed_ + weight * nodes_->mean[v] - light;
       uniform = std::abs(more) <= most_owed_;
       if (uniform) owed_ = more;

@@ -26,7 +26,7 @@ constexpr double kStakeByTolerance = 1e-4;  // flux at stake of `bf`, as a share
 /// Below this much memory of links [bytes] every hit keeps a link of its own: nodes hide what is darker or brighter in
 /// them than was known when the links were made, and a room lit by a spot on its ceiling loses 1 % by that.
 constexpr double kLinksToSpare = 256e6;
-constexpr double kGroundLevel = 0.1;        // share of a space's area that is no brighter than its ground level
+constexpr double kGroundLevel = 0.1;  // share of a space's area that is no brighter than its ground level
 
 /// Quality of one round: thresholds fall from round to round.
 struct Quality {
@@ -44,6 +44,11 @@ Quality full(const HierarchyOptions& o) {
   return {{.bundle_rays = o.bundle_rays, .lamp_rays = o.lamp_rays, .seed = o.seed},
           {.lamp_rays = 64, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
           o.residual};
+}
+
+bool merges(std::size_t leaves, const LinkOptions& links) {
+  const double most = static_cast<double>(leaves) * (links.bundle_rays + links.lamp_rays);
+  return most * sizeof(Link) > kLinksToSpare;
 }
 
 /// What one round hands to the next: the light on the leaves as they were.
@@ -138,8 +143,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   const ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
-  const double most_links = static_cast<double>(n) * (quality.links.bundle_rays + quality.links.lamp_rays);
-  if (most_links * sizeof(Link) < kLinksToSpare) quality.links.uniform = 0;
+  if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
   Transport transport;
   if (options.oracle == HierarchyOptions::Oracle::error) {
@@ -224,10 +228,9 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   };
 
   bool going = true;
-  double leaves_solved = 0;
   for (int number = 0; going && number < kMostRounds; ++number) {
     monitor.report("refine", static_cast<double>(number) / kMostRounds);
-    leaves_solved = static_cast<double>(mesh.leaf_count());
+    const std::size_t before = mesh.leaf_count();
     const std::string name = "round " + std::to_string(number);
     going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), monitor));
     if (!going) break;
@@ -243,7 +246,9 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     const std::size_t halved = refine(mesh, Illumination(on_leaves, glow), last->result.solution.E,
                                       last->result.solution.B, how, rays, monitor);
     log.push_back(name + ": " + std::to_string(halved) + " halved, " + std::to_string(mesh.leaf_count()) + " elements");
-    if (static_cast<double>(mesh.leaf_count()) < kWorthAnother * leaves_solved) break;
+    // Halves know no more of the light than the element they came from did: nodes must not take them for alike.
+    const bool known = mesh.leaf_count() == before || !merges(mesh.leaf_count(), full(options).links);
+    if (known && static_cast<double>(mesh.leaf_count()) < kWorthAnother * static_cast<double>(before)) break;
   }
   if (going) going = go_on(solve_round(problem, mesh, options, full(options), "last round", last.get(), monitor));
 

@@ -61,6 +61,8 @@ bool has_light(const Scene& scene) {
   const auto shines = [](const Spectrum& s) { return s.max() > 0; };
   if (std::any_of(lights.points.begin(), lights.points.end(), [&](const auto& l) { return shines(l.power); }) ||
       std::any_of(lights.spots.begin(), lights.spots.end(), [&](const auto& l) { return shines(l.intensity); }) ||
+      std::any_of(lights.webs.begin(), lights.webs.end(),
+                  [&](const auto& l) { return shines(l.scale * l.web->flux); }) ||
       std::any_of(lights.suns.begin(), lights.suns.end(), [&](const auto& l) { return shines(l.normal_irradiance); }) ||
       (lights.sky && shines(lights.sky->horizontal_irradiance)))
     return true;
@@ -90,8 +92,9 @@ void warn_about_scene(const Scene& scene, Console& console) {
 
 void warn_about_places(const Problem& problem, const Scene& scene, std::span<const SensorPoint> sensors,
                        Console& console) {
-  for (const auto& l : problem.lights.points) warn_about_luminaire(problem, l.name, l.position, console);
-  for (const auto& l : problem.lights.spots) warn_about_luminaire(problem, l.name, l.position, console);
+  for_each_lamp(problem.lights, [&](const auto& lamp, std::size_t) {
+    warn_about_luminaire(problem, lamp.name, lamp.position, console);
+  });
   const auto buried = buried_points(problem, sensors);
   if (!buried.empty())
     console.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +

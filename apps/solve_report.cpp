@@ -17,7 +17,7 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   std::vector<std::string> out;
   if (s.patches.channels == 1) out.push_back("colour: everything is grey, one channel is solved");
   if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
-  if (scene.lights.points.empty() && scene.lights.spots.empty()) out.push_back("luminaires: the scene has none");
+  if (scene.lights.lamp_count() == 0) out.push_back("luminaires: the scene has none");
   const auto& m = s.patches.materials;
   if (std::none_of(m.begin(), m.end(), [](const Material& x) { return x.kind == MaterialKind::glass; }))
     out.push_back("glass: the scene has none");

@@ -117,13 +117,14 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
     unsigned facing = 0;
     for (int lane = 0; lane < 16; ++lane) {
       const Vec3& p = points[static_cast<std::size_t>(lane)];
-      segments.set(lane, p, lamp.position);
-      if (!open_irradiance(lamp, p, n).is_black()) facing |= 1u << lane;
+      const auto u = sobol4(static_cast<std::uint32_t>(lane), key + 1);
+      const Vec3 q = light_point(lamp, p, u[0], u[1]);
+      segments.set(lane, p, short_of(q, p, lift));
+      if (!open_irradiance(lamp, q, p, n).is_black()) facing |= 1u << lane;
     }
     if (facing && problem.rays.visible16(segments, static_cast<std::uint16_t>(facing))) found.lit = true;
   };
-  for (const auto& lamp : problem.lights.points) look_at(lamp);
-  for (const auto& lamp : problem.lights.spots) look_at(lamp);
+  for_each_lamp(problem.lights, [&](const auto& lamp, std::size_t) { look_at(lamp); });
   for (std::uint32_t k = 0; k < samples && emitters.has_emitters(); ++k) {
     const auto u = sobol4(k, key);
     const LightSample s = emitters.sample(points[k], n, (k + u[2]) / static_cast<double>(samples), u[3], u[0], true);
@@ -132,13 +133,28 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
   return found;
 }
 
-template <class Lamp>
-void light_by(const Problem& problem, const Lamp& lamp, std::size_t number, std::uint64_t seed, Spaces& spaces) {
-  for (std::uint32_t k = 0; k < 4096; ++k) {
-    const auto u = sobol4(k, stream_key(seed, kLampRays, number));
-    const Hit hit = problem.rays.first_hit(problem.patches, {lamp.position, sphere_direction(u[0], u[1])});
-    if (hit.patch.valid()) spaces.light(hit.patch);
-  }
+/// Sides that rays of the luminaires meet. Many lamps share the rays of sixteen: they stand in the same rooms.
+void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
+  const std::size_t count = problem.lights.lamp_count();
+  if (count == 0) return;
+  const std::size_t rays_each = std::clamp<std::size_t>((1 << 16) / count, 256, 4096);
+  std::vector<PatchId> met(count * rays_each);
+  parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
+    for (std::size_t number = from; number < to; ++number) {
+      const Vec3 position = with_lamp(problem.lights, number, [](const auto& lamp) { return lamp.position; });
+      const std::uint64_t key = stream_key(seed, kLampRays, number);
+      for (std::size_t k = 0; k < rays_each; ++k) {
+        const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+        const Vec3 d = sphere_direction(u[0], u[1]);
+        const Vec3 start = position + d * (20 * problem.rays.lift());
+        const bool dark =
+            with_lamp(problem.lights, number, [&](const auto& lamp) { return intensity(lamp, d).is_black(); });
+        if (!dark) met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
+      }
+    }
+  });
+  for (const PatchId patch : met)
+    if (patch.valid()) spaces.light(patch);
 }
 
 /// Lets the given patches look for luminaires and for the patches that glow.
@@ -167,9 +183,7 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   const int ray_count = 16 * static_cast<int>(std::clamp<std::size_t>((1 << 15) / std::max<std::size_t>(n, 1), 1, 16));
 
   Spaces spaces(patches);
-  std::size_t number = 0;
-  for (const auto& lamp : problem.lights.points) light_by(problem, lamp, number++, seed, spaces);
-  for (const auto& lamp : problem.lights.spots) light_by(problem, lamp, number++, seed, spaces);
+  light_by_lamps(problem, seed, spaces);
 
   // Emitters first: most patches of a large scene are then met by a ray before it is their turn, and send none, or meet
   // a space that takes part with their first ray.

@@ -4,8 +4,7 @@ namespace clerestory {
 
 Lights to_local_frame(const Lights& lights, const Vec3& origin) {
   Lights local = lights;
-  for (auto& lamp : local.points) lamp.position -= origin;
-  for (auto& lamp : local.spots) lamp.position -= origin;
+  for_each_lamp(local, [&](auto& lamp, std::size_t) { lamp.position -= origin; });
   return local;
 }
 

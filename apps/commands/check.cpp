@@ -53,6 +53,9 @@ void say_lights(const Scene& scene, Console& console) {
     console.say("  light    point luminaire '" + p.name + "', " + rounded(photometric(p.power)) + " lm");
   for (const auto& s : l.spots)
     console.say("  light    spot '" + s.name + "', " + rounded(photometric(s.intensity)) + " cd");
+  for (const auto& w : l.webs)
+    console.say("  light    luminaire '" + w.name + "' of " + w.web->name + ", " +
+                rounded(photometric(w.scale) * w.web->flux) + " lm");
   if (l.sky)
     console.say(std::string("  light    ") + (l.sky->model == SkyModel::uniform ? "uniform" : "CIE overcast") +
                 " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +

@@ -82,7 +82,7 @@ void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vecto
                               " degrees; no light is taken beyond them"));
     }
   }
-  const double flux = luminous_flux(web);
+  const double flux = web.flux = luminous_flux(web);
   if (!(flux > 0)) {
     warnings.push_back(web.name + ": all its intensities are 0; it gives no light");
   } else if (declared > 0 && (flux > declared * (1 + kOdd) || (!at_most && flux < declared * (1 - kOdd)))) {

@@ -96,6 +96,15 @@ void add_lights(Scene& scene, const Lights& lights, const Affine& place, const s
     spot.direction = normalized(place.direction(spot.direction));
     scene.lights.spots.push_back(std::move(spot));
   }
+  for (WebLuminaire lamp : lights.webs) {
+    lamp.position = light_position(place.point(lamp.position), lamp.name, file);
+    // A mirrored transform does not mirror the lamp: its third axis follows from the others.
+    lamp.axes.z = normalized(place.direction(lamp.axes.z));
+    const Vec3 x = place.direction(lamp.axes.x);
+    lamp.axes.x = normalized(x - lamp.axes.z * dot(x, lamp.axes.z));
+    lamp.axes.y = cross(lamp.axes.z, lamp.axes.x);
+    scene.lights.webs.push_back(std::move(lamp));
+  }
   for (Sun sun : lights.suns) {
     sun.direction = normalized(place.direction(sun.direction));
     scene.lights.suns.push_back(sun);

@@ -30,16 +30,41 @@ class PatchSampler {
   const Vec3& normal() const { return normal_; }
   bool any_corner(const auto& predicate) const { return std::any_of(corners_.begin(), corners_.end(), predicate); }
 
+  /// What the lamp can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
+  template <class Lamp>
+  double estimate(const Lamp& lamp) const {
+    if (!any_corner([&](const Vec3& c) { return dot(normal_, lamp.position - c) > -reach(lamp); })) return 0;
+    const Vec3 centre = (corners_[0] + corners_[1] + corners_[2]) / 3;
+    double sum = 0, size2 = 0;
+    for (const Vec3& p : {corners_[0], corners_[1], corners_[2], centre}) {
+      sum += luminous_mean(open_irradiance(lamp, p, normal_));
+      size2 = std::max(size2, dot(p - centre, p - centre));
+    }
+    // A beam may miss the four points; and a lamp in the middle of the patch is not as bright as it seems from there.
+    const Vec3 d = lamp.position - centre;
+    const double all_round = luminous_mean(power(lamp)) / (4 * std::numbers::pi * (dot(d, d) + size2));
+    return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
+  }
+
   template <class Open, class End>
   Spectrum mean(const Open& open_at, const End& end_for) const {
-    if (options_.edge_rays <= options_.lamp_rays)
-      return look(key_, options_.lamp_rays, open_at, end_for).sum / options_.lamp_rays;
+    return mean_of_choice([&](const Vec3& p, double u, double v, const auto&) {
+      const Vec3 end = end_for(p, u, v);
+      return std::pair(end, open_at(p, end));
+    });
+  }
+
+  /// The same where light(point, u, v, pick) gives the end and the irradiance together; pick() is a number to choose
+  /// by.
+  template <class Light>
+  Spectrum mean_of_choice(const Light& light) const {
+    if (options_.edge_rays <= options_.lamp_rays) return look(key_, options_.lamp_rays, light).sum / options_.lamp_rays;
     // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
     // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
-    const Tally pilot = look(mix_bits(key_), options_.lamp_rays, open_at, end_for);
+    const Tally pilot = look(mix_bits(key_), options_.lamp_rays, light);
     const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
     const int rays = on_an_edge ? options_.edge_rays : options_.lamp_rays;
-    return look(key_, rays, open_at, end_for).sum / rays;
+    return look(key_, rays, light).sum / rays;
   }
 
  private:
@@ -48,8 +73,8 @@ class PatchSampler {
     int facing = 0, visible = 0;
   };
 
-  template <class Open, class End>
-  Tally look(std::uint64_t key, int count, const Open& open_at, const End& end_for) const {
+  template <class Light>
+  Tally look(std::uint64_t key, int count, const Light& light) const {
     const double lift = problem_.rays.lift();
     Tally tally;
     for (int first = 0; first < count; first += 16) {
@@ -61,8 +86,10 @@ class PatchSampler {
         const auto k = static_cast<std::size_t>(lane);
         const auto u = sobol4(static_cast<std::uint32_t>(first + lane), key);
         from[k] = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
-        to[k] = end_for(from[k], u[2], u[3]);
-        open[k] = open_at(from[k], to[k]);
+        const auto pick = [&] { return sobol4(static_cast<std::uint32_t>(first + lane), key + 1)[0]; };
+        const auto [end, irradiance] = light(from[k], u[2], u[3], pick);
+        to[k] = short_of(end, from[k], lift);
+        open[k] = irradiance;
         segments.set(lane, from[k], to[k]);
         if (!open[k].is_black()) facing |= 1u << lane;
       }
@@ -85,10 +112,60 @@ class PatchSampler {
 
 template <class Lamp>
 Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
-  if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > 0; }))
+  if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > -reach(lamp); }))
     return Spectrum(0.0);
-  return patch.mean([&](const Vec3& p, const Vec3&) { return open_irradiance(lamp, p, patch.normal()); },
-                    [&](const Vec3&, double, double) { return lamp.position; });
+  return patch.mean([&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
+                    [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); });
+}
+
+/// The luminaires over one patch. Those that give much of its light are looked at one by one; the others, however many,
+/// share the rays of one, each ray to a lamp chosen in proportion to what it can give.
+Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
+  constexpr std::size_t kFew = 4;    // lamps that need no choice
+  constexpr double kMuch = 1.0 / 6;  // of what all can give
+  const std::size_t count = lights.lamp_count();
+  Spectrum E(0.0);
+  if (count <= kFew) {
+    for_each_lamp(lights, [&](const auto& lamp, std::size_t) { E += from_lamp(patch, lamp); });
+    return E;
+  }
+  struct Over {
+    std::uint32_t number;
+    double gives;  ///< estimate without blockers, > 0 where the lamp can give anything [W/m2]
+  };
+  thread_local std::vector<Over> over;
+  over.clear();
+  double all = 0;
+  for_each_lamp(lights, [&](const auto& lamp, std::size_t number) {
+    const double gives = patch.estimate(lamp);
+    if (gives > 0) over.push_back({static_cast<std::uint32_t>(number), gives});
+    all += gives;
+  });
+  double shared = 0;  // becomes the running sum over lamps that share rays
+  std::size_t kept = 0;
+  for (const Over& lamp : over) {
+    if (lamp.gives > kMuch * all) {
+      with_lamp(lights, lamp.number, [&](const auto& l) { E += from_lamp(patch, l); });
+    } else {
+      shared += lamp.gives;
+      over[kept++] = {lamp.number, shared};
+    }
+  }
+  over.resize(kept);
+  if (!(shared > 0)) return E;
+  const auto chosen = [&](double pick) {
+    const auto at = std::upper_bound(over.begin(), over.end(), pick * shared,
+                                     [](double x, const Over& lamp) { return x < lamp.gives; });
+    return static_cast<std::size_t>(std::min(at, over.end() - 1) - over.begin());
+  };
+  return E + patch.mean_of_choice([&](const Vec3& p, double u, double v, const auto& pick) {
+    const std::size_t k = chosen(pick());
+    const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
+    return with_lamp(lights, over[k].number, [&](const auto& lamp) {
+      const Vec3 q = light_point(lamp, p, u, v);
+      return std::pair(q, open_irradiance(lamp, q, p, patch.normal()) / probability);
+    });
+  });
 }
 
 Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {
@@ -116,28 +193,49 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
   return sum * (std::numbers::pi / options.sky_rays);
 }
 
-/// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part.
+/// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
+struct LampBalance {
+  double emitted = 0, escaped = 0, absorbed = 0;
+};
+
 template <class Lamp>
-void balance_lamp(const Problem& problem, const Lamp& lamp, std::size_t number, DirectLight& direct,
-                  const DirectOptions& options) {
-  constexpr std::uint32_t kRays = 1 << 14;
-  const std::uint64_t key = stream_key(options.seed, kLampRays, number);
+LampBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t rays, std::uint64_t key) {
   double sent = 0, arrived = 0, escaped = 0;
-  for (std::uint32_t k = 0; k < kRays; ++k) {
+  for (std::uint32_t k = 0; k < rays; ++k) {
     const auto u = sobol4(k, key);
-    const Ray ray{lamp.position, sphere_direction(u[0], u[1])};
-    const Hit hit = problem.rays.first_hit(problem.patches, ray);
-    const Spectrum I = intensity(lamp, ray.direction);
-    sent += luminous_mean(I);
-    if (hit.escaped()) escaped += luminous_mean(I * hit.transmittance);
-    if (hit.patch.valid()) arrived += luminous_mean(I * hit.transmittance);
+    const Vec3 d = sphere_direction(u[0], u[1]);
+    const double I = luminous_mean(intensity(lamp, d));
+    if (!(I > 0)) continue;
+    const double lift = 20 * problem.rays.lift();
+    const Hit hit =
+        problem.rays.first_hit(problem.patches, {light_point(lamp, lamp.position, u[2], u[3]) + d * lift, d});
+    sent += I;
+    if (hit.escaped()) escaped += I * luminous_mean(hit.transmittance);
+    if (hit.patch.valid()) arrived += I * luminous_mean(hit.transmittance);
   }
   const double flux = luminous_mean(power(lamp));
-  direct.rays += kRays;
-  direct.energy.emitted += flux;
-  if (!(sent > 0)) return;
-  direct.energy.escaped += flux * escaped / sent;
-  direct.energy.absorbed += flux * (sent - arrived - escaped) / sent;
+  if (!(sent > 0)) return {flux, 0, 0};
+  return {flux, flux * escaped / sent, flux * (sent - arrived - escaped) / sent};
+}
+
+/// Many lamps share the rays of four.
+void balance_lamps(const Problem& problem, DirectLight& direct, const DirectOptions& options) {
+  const std::size_t count = problem.lights.lamp_count();
+  if (count == 0) return;
+  const auto rays = static_cast<std::uint32_t>(std::clamp<std::size_t>((1 << 16) / count, 512, 1 << 14));
+  std::vector<LampBalance> balances(count);
+  parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
+    for (std::size_t number = from; number < to; ++number)
+      balances[number] = with_lamp(problem.lights, number, [&](const auto& lamp) {
+        return balance(problem, lamp, rays, stream_key(options.seed, kLampRays, number));
+      });
+  });
+  for (const LampBalance& b : balances) {
+    direct.energy.emitted += b.emitted;
+    direct.energy.escaped += b.escaped;
+    direct.energy.absorbed += b.absorbed;
+  }
+  direct.rays += count * rays;
 }
 
 }  // namespace
@@ -154,9 +252,8 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   std::vector<double> daylight(n);  // [W] of each patch
   const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
     const PatchSampler patch(problem, i, spend);
-    Spectrum lamps(0.0), sky(0.0);
-    for (const auto& lamp : lights.points) lamps += from_lamp(patch, lamp);
-    for (const auto& lamp : lights.spots) lamps += from_lamp(patch, lamp);
+    const Spectrum lamps = from_lamps(lights, patch);
+    Spectrum sky(0.0);
     for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
     if (!light.sky.dark() && spend.sky_rays > 0) sky += from_sky(light, i, spend);
     direct.E.set(i, lamps + sky);
@@ -178,12 +275,9 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     });
   }
   for (const double flux : daylight) direct.energy.emitted += flux;
-  direct.rays += n * static_cast<std::size_t>(options.lamp_rays) *
-                 (lights.points.size() + lights.spots.size() + lights.suns.size());
+  direct.rays += n * static_cast<std::size_t>(options.lamp_rays) * (lights.lamp_count() + lights.suns.size());
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
-  std::size_t number = 0;
-  for (const auto& lamp : lights.points) balance_lamp(problem, lamp, number++, direct, options);
-  for (const auto& lamp : lights.spots) balance_lamp(problem, lamp, number++, direct, options);
+  balance_lamps(problem, direct, options);
   return direct;
 }
 

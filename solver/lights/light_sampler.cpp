@@ -48,6 +48,24 @@ LightBounds bounds_of_patch(const PatchSet& patches, PatchId q, double flux) {
           flux};
 }
 
+LightBounds bounds_of(const PointLuminaire& lamp) {
+  return {lamp.position, lamp.position, {}, std::numbers::pi, luminous_mean(intensity(lamp, {}))};
+}
+LightBounds bounds_of(const SpotLuminaire& lamp) {
+  return {lamp.position, lamp.position, lamp.direction, lamp.outer_angle, luminous_mean(lamp.intensity)};
+}
+LightBounds bounds_of(const WebLuminaire& lamp) {
+  const auto& [x, y, z] = lamp.axes;
+  const Vec3 half = lamp.web->opening.size / 2;
+  const auto along = [&](int axis) {
+    return std::abs(x[axis]) * half.x + std::abs(y[axis]) * half.y + std::abs(z[axis]) * half.z;
+  };
+  const Vec3 box{along(0), along(1), along(2)};
+  const double cone = beam_half_angle(*lamp.web);
+  return {lamp.position - box, lamp.position + box, cone < std::numbers::pi ? -z : Vec3{}, cone,
+          luminous_mean(lamp.scale) * peak_candela(*lamp.web)};
+}
+
 /// Circular cross-section of the scene: what a sun lights at most [m2].
 double cross_section(const RayScene& rays) { return std::numbers::pi / 4 * rays.diameter() * rays.diameter(); }
 
@@ -72,16 +90,10 @@ LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_
   patches_ = LightTree(bounds, Falloff::cosine, extent);
 
   bounds.clear();
-  for (const PointLuminaire& lamp : lights.points) {
-    const double peak = luminous_mean(intensity(lamp, {}));
-    bounds.push_back({lamp.position, lamp.position, {}, std::numbers::pi, peak});
+  for_each_lamp(lights, [&](const auto& lamp, std::size_t) {
+    bounds.push_back(bounds_of(lamp));
     lamps_power_ += luminous_mean(power(lamp));
-  }
-  for (const SpotLuminaire& lamp : lights.spots) {
-    const double peak = luminous_mean(lamp.intensity);
-    bounds.push_back({lamp.position, lamp.position, lamp.direction, lamp.outer_angle, peak});
-    lamps_power_ += luminous_mean(power(lamp));
-  }
+  });
   if (lamps_power_ > 0) lamps_ = LightTree(bounds, Falloff::none, extent);
   for (const Sun& sun : lights.suns) suns_power_ += luminous_mean(sun.normal_irradiance) * cross_section(problem.rays);
 }
@@ -108,7 +120,8 @@ LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, doub
   const Shares s = shares(p, n);
   const double lamps_end = s.patches + s.lamps;
   if (pick < s.patches) return on_patch(p, n, pick / s.patches, u, v, s.patches);
-  if (s.lamps > 0 && (pick < lamps_end || !(s.suns > 0))) return on_lamp(p, n, (pick - s.patches) / s.lamps, s.lamps);
+  if (s.lamps > 0 && (pick < lamps_end || !(s.suns > 0)))
+    return on_lamp(p, n, (pick - s.patches) / s.lamps, u, v, s.lamps);
   if (s.suns > 0) return on_sun(p, n, (pick - lamps_end) / s.suns, u, v, s.suns);
   return s.patches > 0 ? on_patch(p, n, pick, u, v, s.patches) : LightSample{};
 }
@@ -128,17 +141,14 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
           probability * r2 / (cos_q * area), q};
 }
 
-LightSample LightSampler::on_lamp(const Vec3& p, const Vec3& n, double pick, double share) const {
+LightSample LightSampler::on_lamp(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
   const LightTree::Choice choice = lamps_.choose(p, n, pick);
   if (!(choice.probability > 0)) return {};
-  const auto& [points, spots, sky, suns] = problem_.lights;
-  const double probability = share * choice.probability;
-  if (choice.light < points.size()) {
-    const PointLuminaire& lamp = points[choice.light];
-    return {lamp.position, open_irradiance(lamp, p, n) / probability, 0, {}};
-  }
-  const SpotLuminaire& lamp = spots[choice.light - points.size()];
-  return {lamp.position, open_irradiance(lamp, p, n) / probability, 0, {}};
+  return with_lamp(problem_.lights, choice.light, [&](const auto& lamp) -> LightSample {
+    const Vec3 q = light_point(lamp, p, u, v);
+    const double probability = share * choice.probability;
+    return {short_of(q, p, problem_.rays.lift()), open_irradiance(lamp, q, p, n) / probability, 0, {}};
+  });
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
@@ -193,15 +203,23 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
     if (++queued == 16) flush();
   };
   // In the tree's order lamps that share a packet are neighbours.
-  const auto& [points, spots, sky, suns] = problem_.lights;
-  for (const std::uint32_t lamp : lamps_.order()) {
-    if (lamp < points.size())
-      look(points[lamp].position, open_irradiance(points[lamp], p, n));
-    else
-      look(spots[lamp - points.size()].position, open_irradiance(spots[lamp - points.size()], p, n));
+  const double lift = rays.lift();
+  for (const std::uint32_t number : lamps_.order()) {
+    with_lamp(problem_.lights, number, [&](const auto& lamp) {
+      const int count = opening_rays(lamp, p);
+      if (count == 1) {
+        look(short_of(lamp.position, p, lift), open_irradiance(lamp, p, n));
+        return;
+      }
+      for (int k = 0; k < count; ++k) {
+        const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
+        const Vec3 q = light_point(lamp, p, u[0], u[1]);
+        look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) / count);
+      }
+    });
   }
   flush();
-  for (const Sun& sun : suns) {
+  for (const Sun& sun : problem_.lights.suns) {
     for (int k = 0; k < sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);

@@ -41,7 +41,8 @@ class LightSampler {
   /// explicit patch q at `distance`, `cos_q` being the cosine there.
   double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q, bool emitters_only) const;
 
-  /// Irradiance at p of luminaires without extent and of the sun: a shadow ray to each lamp, sun_rays to each sun.
+  /// Irradiance at p of luminaires and of the sun: a shadow ray to each lamp, more to openings that are near, sun_rays
+  /// to each sun.
   Spectrum small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
 
  private:
@@ -50,12 +51,12 @@ class LightSampler {
   };
   Shares shares(const Vec3& p, const Vec3& n) const;
   LightSample on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
-  LightSample on_lamp(const Vec3& p, const Vec3& n, double pick, double share) const;
+  LightSample on_lamp(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
   LightSample on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
 
   const Problem& problem_;
   const Field& glow_;
-  LightTree patches_, lamps_;                                    ///< of bright_; of points, and spots after them
+  LightTree patches_, lamps_;                                    ///< of bright_; of all luminaires, by number
   std::vector<std::uint32_t> bright_;                            ///< patches sampled like lights
   std::vector<std::uint32_t> number_of_patch_;                   ///< N, number in bright_ or kNone; empty without any
   double patches_power_ = 0, lamps_power_ = 0, suns_power_ = 0;  ///< [W]

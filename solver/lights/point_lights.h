@@ -1,6 +1,10 @@
 #pragma once
 // Luminaires without extent.
 
+#include <algorithm>
+#include <cmath>
+
+#include "solver/lights/web_luminaire.h"
 #include "solver/model/light_spec.h"
 
 namespace clerestory {
@@ -15,13 +19,39 @@ Spectrum intensity(const SpotLuminaire& lamp, const Vec3& d);
 Spectrum power(const PointLuminaire& lamp);
 Spectrum power(const SpotLuminaire& lamp);
 
-/// Irradiance [W/m2] at point p with unit normal n, when nothing blocks: I cos / r2.
+/// What lamps with an opening have too, see web_luminaire.h.
 template <class Lamp>
-Spectrum open_irradiance(const Lamp& lamp, const Vec3& p, const Vec3& n) {
-  const Vec3 to_lamp = lamp.position - p;
+double reach(const Lamp&) {
+  return 0;
+}
+template <class Lamp>
+int opening_rays(const Lamp&, const Vec3&) {
+  return 1;
+}
+template <class Lamp>
+Vec3 light_point(const Lamp& lamp, const Vec3&, double, double) {
+  return lamp.position;
+}
+
+/// Irradiance [W/m2] at point p with unit normal n from the lamp's point q, when nothing blocks: I cos / r2.
+template <class Lamp>
+Spectrum open_irradiance(const Lamp& lamp, const Vec3& q, const Vec3& p, const Vec3& n) {
+  const Vec3 to_lamp = q - p;
   const double r2 = dot(to_lamp, to_lamp), r = std::sqrt(r2), cos_r = dot(n, to_lamp);
   if (!(cos_r > 0)) return Spectrum(0.0);
   return intensity(lamp, to_lamp / -r) * (cos_r / (r2 * r));
+}
+/// The same from the lamp's middle.
+template <class Lamp>
+Spectrum open_irradiance(const Lamp& lamp, const Vec3& p, const Vec3& n) {
+  return open_irradiance(lamp, lamp.position, p, n);
+}
+
+/// End of the shadow ray from p to q on a lamp: short of it by a hair, as lamps hang in the very plane of a ceiling.
+inline Vec3 short_of(const Vec3& q, const Vec3& p, double lift) {
+  const Vec3 back = p - q;
+  const double r = length(back);
+  return r > 0 ? q + back * std::min(0.5, 20 * lift / r) : q;
 }
 
 }  // namespace clerestory

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/model/channels.h"
+#include "solver/model/photometric_web.h"
 #include "solver/model/sky_image.h"
 #include "solver/model/sky_shape.h"
 #include "solver/model/vec.h"
@@ -28,6 +29,17 @@ struct SpotLuminaire {
   Vec3 direction;                           ///< unit, away from the lamp
   Spectrum intensity;                       ///< on the axis [W/sr]
   double inner_angle = 0, outer_angle = 0;  ///< half-angles [rad]
+};
+
+/// Luminaire of a photometric file. Nearer than five times its opening's largest length its light comes from the whole
+/// opening, farther away from the centre.
+struct WebLuminaire {
+  std::string name;
+  std::shared_ptr<const PhotometricWeb> web;  ///< many luminaires share one
+  Vec3 position;                              ///< of the photometric centre [m]
+  LuminaireAxes axes;
+  Spectrum scale;       ///< radiant intensity for each candela of the web, dimming included [W/sr / cd]
+  std::string group{};  ///< as of PointLuminaire
 };
 
 enum class SkyModel { uniform, cie_overcast, cie_clear, cie_general, perez, image };
@@ -52,10 +64,30 @@ struct Sun {
 struct Lights {
   std::vector<PointLuminaire> points;
   std::vector<SpotLuminaire> spots;
+  std::vector<WebLuminaire> webs;
   std::optional<Sky> sky;
   std::vector<Sun> suns;  ///< the scene's sun, and directional lights of a glTF file
 
-  bool empty() const { return points.empty() && spots.empty() && !sky && suns.empty(); }
+  std::size_t lamp_count() const { return points.size() + spots.size() + webs.size(); }
+  bool empty() const { return lamp_count() == 0 && !sky && suns.empty(); }
 };
+
+/// Calls visit(lamp, number) for the luminaires of all kinds, which number them through: points, spots, webs.
+template <class AnyLights, class Visit>
+void for_each_lamp(AnyLights& lights, const Visit& visit) {
+  std::size_t number = 0;
+  for (auto& lamp : lights.points) visit(lamp, number++);
+  for (auto& lamp : lights.spots) visit(lamp, number++);
+  for (auto& lamp : lights.webs) visit(lamp, number++);
+}
+
+/// visit(lamp) for the luminaire of that number.
+template <class Visit>
+auto with_lamp(const Lights& lights, std::size_t number, const Visit& visit) {
+  if (number < lights.points.size()) return visit(lights.points[number]);
+  number -= lights.points.size();
+  if (number < lights.spots.size()) return visit(lights.spots[number]);
+  return visit(lights.webs[number - lights.spots.size()]);
+}
 
 }  // namespace clerestory

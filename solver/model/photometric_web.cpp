@@ -71,6 +71,21 @@ double integral(const std::vector<double>& at, Weight weight, const Value& value
 
 Vec3 beam_axis(WebType type) { return type == WebType::A ? Vec3{1, 0, 0} : Vec3{0, 0, -1}; }
 
+LuminaireAxes aimed(WebType type, const Vec3& aim, double rotation_deg) {
+  const Vec3 beam = beam_axis(type);
+  const double c = dot(beam, aim);
+  // Half a turn has no shortest way.
+  const Vec3 half_turn = type == WebType::A ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
+  const Vec3 k = cross(beam, aim), back = -aim;
+  const double angle = rotation_deg * kDegree, cos_r = std::cos(angle), sin_r = std::sin(angle);
+  const auto turned = [&](const Vec3& v) {
+    const Vec3 there =
+        c > -1 + 1e-12 ? v * c + cross(k, v) + k * (dot(k, v) / (1 + c)) : half_turn * (2 * dot(half_turn, v)) - v;
+    return there * cos_r + cross(back, there) * sin_r + back * (dot(back, there) * (1 - cos_r));
+  };
+  return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
+}
+
 double candela_towards(const PhotometricWeb& web, const Vec3& d) {
   const auto arc_sine = [](double s) { return std::asin(std::clamp(s, -1.0, 1.0)) / kDegree; };
   double v = 0, h = 0;

@@ -35,6 +35,7 @@ struct PhotometricWeb {
   std::vector<float> candela;                ///< m x n: [h * n + v], multiplier and ballast factors applied [cd]
   LuminousOpening opening;
 
+  double flux = 0;       ///< luminous_flux() of this [lm]
   double lamp_flux = 0;  ///< of the bare lamps [lm]; 0: the file gives absolute intensities and says nothing of lamps
   double declared_flux = 0;  ///< of the luminaire, lamp flux x light output ratio [lm]; 0: not said
 
@@ -45,6 +46,16 @@ struct PhotometricWeb {
 
 /// Direction in the luminaire's frame that `aim` means: gamma = 0 of type C, V = H = 0 of types A and B.
 Vec3 beam_axis(WebType type);
+
+/// A luminaire's own axes in the scene, unit and at right angles; as they are here it hangs as it was measured.
+struct LuminaireAxes {
+  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+};
+
+/// Axes of a luminaire whose beam axis points along `aim`: turned there from upright on the shortest way (from down to
+/// up: about x; for type A from ahead to behind: about z), then about aim by rotation_deg, counter-clockwise for who
+/// looks along aim from behind the luminaire, so for aim down: counter-clockwise in plan, C0 from +x towards +y.
+LuminaireAxes aimed(WebType type, const Vec3& aim, double rotation_deg);
 
 /// Intensity towards the unit direction d of the luminaire's frame [cd].
 double candela_towards(const PhotometricWeb& web, const Vec3& d);

@@ -16,6 +16,7 @@ void for_each_colour(AnyScene& scene, const Visit& visit) {
   }
   for (auto& l : scene.lights.points) visit(l.power);
   for (auto& l : scene.lights.spots) visit(l.intensity);
+  for (auto& l : scene.lights.webs) visit(l.scale);
   for (auto& s : scene.lights.suns) visit(s.normal_irradiance);
   if (scene.lights.sky) visit(scene.lights.sky->horizontal_irradiance);
 }

@@ -327,9 +327,6 @@ TEST_F(SceneFile, WhatALaterVersionReadsIsNamedAsSuch) {
   EXPECT_NE(
       refusal_with(R"("sky": { "model": "perez" })").find("'perez' is not available in this version; use 'uniform'"),
       std::string::npos);
-  EXPECT_NE(refusal_with(R"("luminaires": [ { "file": "lamp.ies", "position": [0,0,0] } ])")
-                .find("luminaires[0].file 'lamp.ies': luminaire files are not available in this version; use"),
-            std::string::npos);
   EXPECT_NE(wood_refusal(R"({ "type": "mirror", "reflectance": 0.9 })")
                 .find("'mirror' is not available in this version; use"),
             std::string::npos);

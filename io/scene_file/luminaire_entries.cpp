@@ -1,0 +1,144 @@
+#include "io/scene_file/luminaire_entries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "io/formats/photometry.h"
+#include "io/input_file.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t kMostLuminaires = 1'000'000;
+constexpr Range kFlux{
+    .low = 0, .high = kMostLight, .advice = "a lamp emits no less than nothing and no more than a result can hold"};
+
+class LuminaireReader {
+ public:
+  LuminaireReader(const std::filesystem::path& folder, ChannelCount& channels, std::vector<std::string>& warnings)
+      : folder_(folder), channels_(channels), warnings_(warnings) {}
+
+  void read(const JsonObject& object, std::size_t number, Lights& lights) {
+    std::string name = object.word("name").value_or("");
+    if (name.empty()) name = text("luminaire ", number);
+    const std::string group = object.word("group").value_or("");
+    object.at("position");
+    const Vec3 position = *object.vector("position", kCoordinate);
+    constexpr std::string_view kTypes[] = {"point"};
+    const bool is_point = object.choice("type", kTypes).has_value();
+    if (object.has("file")) {
+      if (is_point) {
+        throw InputError(text(object.where(),
+                              ": has a file, which says where its light goes, and \"type\": \"point\"; ",
+                              "keep one of them"));
+      }
+      lights.webs.push_back(read_web(object, std::move(name), position, group));
+    } else if (is_point) {
+      lights.points.push_back({std::move(name), position, read_point_power(object), group});
+    } else {
+      throw InputError(text(object.where(), " says neither \"file\", the name of an .ies or .ldt file, nor \"type\": ",
+                            "\"point\"; a luminaire needs one of them"));
+    }
+  }
+
+ private:
+  /// In watts, or nothing; before dimming.
+  std::optional<Spectrum> read_flux(const JsonObject& object) {
+    const auto flux = object.colour("luminous_flux", kFlux);
+    const auto power = object.colour("power", kFlux);
+    if (flux && power) {
+      throw InputError(text(object.where(), ": luminous_flux and power both say what it emits; keep one of them"));
+    }
+    if (!flux && !power) return std::nullopt;
+    channels_.note(flux ? *flux : *power, object.place(flux ? "luminous_flux" : "power"));
+    return flux ? flux->value / kWhiteEfficacy : power->value;
+  }
+
+  static double read_dimming(const JsonObject& object) {
+    return object.number("dimming", {.low = 0, .high = 1000, .advice = "1 is full light"}).value_or(1) *
+           object
+               .number("maintenance_factor", {.low = 0,
+                                              .high = 1,
+                                              .low_allowed = false,
+                                              .advice = "it is what is left of the light of new lamps"})
+               .value_or(1);
+  }
+
+  Spectrum read_point_power(const JsonObject& object) {
+    const auto power = read_flux(object);
+    if (!power) throw InputError(text(object.place("luminous_flux"), " is missing; a lamp needs its flux in lumens"));
+    if (object.unit_vector("aim") || object.number("rotation")) {
+      warnings_.push_back(
+          text(object.where(), ": aim and rotation are not used: a point shines the same in all directions"));
+    }
+    return *power * read_dimming(object);
+  }
+
+  WebLuminaire read_web(const JsonObject& object, std::string name, const Vec3& position, const std::string& group) {
+    WebLuminaire lamp;
+    lamp.name = std::move(name);
+    lamp.group = group;
+    lamp.position = position;
+    lamp.web = web_of(object);
+    const PhotometricWeb& web = *lamp.web;
+    const Vec3 upright = beam_axis(web.type);
+    const Vec3 aim = object.unit_vector("aim").value_or(upright);
+    const double rotation =
+        object.number("rotation", {.low = -3600, .high = 3600, .advice = "it is in degrees about aim"}).value_or(0);
+    lamp.axes = aimed(web.type, aim, rotation);
+    lamp.scale = Spectrum(1 / kWhiteEfficacy);
+    if (const auto power = read_flux(object)) {
+      if (!(web.flux > 0)) {
+        throw InputError(text(object.place("file"), " '", web.name, "' gives no light; its flux cannot be scaled to ",
+                              "the one the scene asks for"));
+      }
+      lamp.scale = *power / web.flux;
+    } else {
+      const double tilt = std::acos(std::clamp(dot(aim, upright), -1.0, 1.0)) * 180 / std::numbers::pi;
+      lamp.scale *= tilt_factor(web, tilt);
+    }
+    lamp.scale *= read_dimming(object);
+    return lamp;
+  }
+
+  std::shared_ptr<const PhotometricWeb> web_of(const JsonObject& object) {
+    const std::string named = *object.word("file");
+    const std::filesystem::path file = (folder_ / named).lexically_normal();
+    auto& web = read_before_[file];
+    if (!web) {
+      require_file(file, object.place("file"), named);
+      web = std::make_shared<const PhotometricWeb>(read_photometry(file, warnings_));
+    }
+    return web;
+  }
+
+  const std::filesystem::path& folder_;
+  ChannelCount& channels_;
+  std::vector<std::string>& warnings_;
+  std::map<std::filesystem::path, std::shared_ptr<const PhotometricWeb>> read_before_;
+};
+
+}  // namespace
+
+void read_luminaire_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
+                            ChannelCount& channels, Lights& lights, std::vector<std::string>& warnings) {
+  if (!root.has("luminaires")) return;
+  const Json& entries = as_array(root.at("luminaires"), root.place("luminaires"), "luminaires");
+  if (entries.size() > kMostLuminaires)
+    throw InputError(text(root.place("luminaires"), " has more than ", kMostLuminaires, " entries"));
+  LuminaireReader reader(folder, channels, warnings);
+  std::size_t n = 0;
+  for (const Json& entry : entries) {
+    const JsonObject object(entry, text(file_name, ": luminaires[", n++, "]"),
+                            {"name", "type", "file", "position", "aim", "rotation", "luminous_flux", "power", "dimming",
+                             "maintenance_factor", "group"});
+    reader.read(object, n, lights);
+  }
+}
+
+}  // namespace clerestory

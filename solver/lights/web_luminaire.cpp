@@ -1,0 +1,92 @@
+#include "solver/lights/web_luminaire.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace clerestory {
+namespace {
+
+constexpr double kNear = 5;               // lengths of the opening, nearer than which it counts
+constexpr double kSmallestShare = 256.0;  // of the opening, that one point stands for
+
+double largest_length(const Vec3& size) { return std::max({size.x, size.y, size.z}); }
+
+/// The two larger lengths of the opening, and the axes they lie along.
+struct Face {
+  double a, b;
+  Vec3 along_a, along_b;
+  bool round;
+};
+Face face(const WebLuminaire& lamp) {
+  const auto& [size, round] = lamp.web->opening;
+  const auto& [x, y, z] = lamp.axes;
+  if (size.z <= std::min(size.x, size.y)) return {size.x, size.y, x, y, round};
+  return size.x >= size.y ? Face{size.x, size.z, x, z, false} : Face{size.y, size.z, y, z, false};
+}
+
+Vec3 to_lamp_frame(const WebLuminaire& lamp, const Vec3& d) {
+  return {dot(d, lamp.axes.x), dot(d, lamp.axes.y), dot(d, lamp.axes.z)};
+}
+
+bool is_near(const WebLuminaire& lamp, const Vec3& p) {
+  const double near = kNear * largest_length(lamp.web->opening.size);
+  const Vec3 d = p - lamp.position;
+  return dot(d, d) < near * near;
+}
+
+}  // namespace
+
+Spectrum intensity(const WebLuminaire& lamp, const Vec3& d) {
+  return lamp.scale * candela_towards(*lamp.web, to_lamp_frame(lamp, d));
+}
+
+Spectrum power(const WebLuminaire& lamp) { return lamp.scale * lamp.web->flux; }
+
+double reach(const WebLuminaire& lamp) {
+  const Face f = face(lamp);
+  return std::hypot(f.a, f.b) / 2;
+}
+
+int opening_rays(const WebLuminaire& lamp, const Vec3& p) {
+  if (!is_near(lamp, p)) return 1;
+  const Vec3 at = to_lamp_frame(lamp, p - lamp.position), half = lamp.web->opening.size / 2;
+  const auto beside = [](double x, double limit) { return std::max(0.0, std::abs(x) - limit); };
+  const double gap = length({beside(at.x, half.x), beside(at.y, half.y), beside(at.z, half.z)});
+  const double size = largest_length(lamp.web->opening.size);
+  return gap >= size / 2 ? 16 : gap >= size / 4 ? 64 : 256;
+}
+
+Vec3 light_point(const WebLuminaire& lamp, const Vec3& p, double u, double v) {
+  if (!is_near(lamp, p)) return lamp.position;
+  const Face f = face(lamp);
+  double a = u - 0.5, b = v - 0.5;
+  if (f.round) {
+    const double r = std::sqrt(u) / 2, phi = 2 * std::numbers::pi * v;
+    a = r * std::cos(phi), b = r * std::sin(phi);
+  }
+  return lamp.position + f.along_a * (f.a * a) + f.along_b * (f.b * b);
+}
+
+Spectrum open_irradiance(const WebLuminaire& lamp, const Vec3& q, const Vec3& p, const Vec3& n) {
+  const Vec3 to_lamp = q - p;
+  const double r2 = dot(to_lamp, to_lamp), r = std::sqrt(r2), cos_r = dot(n, to_lamp);
+  if (!(cos_r > 0)) return Spectrum(0.0);
+  const Face f = face(lamp);
+  const double strip = std::max(f.a, f.b) / kSmallestShare;  // of an opening that is no more than a line
+  const double least_r2 = std::max(f.a * f.b / (kSmallestShare * std::numbers::pi), strip * strip);
+  return intensity(lamp, to_lamp / -r) * (cos_r / (std::max(r2, least_r2) * r));
+}
+
+double beam_half_angle(const PhotometricWeb& web) {
+  if (web.type != WebType::C) return std::numbers::pi;
+  const std::size_t n = web.vertical.size();
+  std::size_t last = 0;  // highest angle with light
+  for (std::size_t i = 0; i < web.candela.size(); ++i)
+    if (web.candela[i] > 0) last = std::max(last, i % n);
+  const double end = web.vertical[std::min(last + 1, n - 1)];
+  return std::min(std::numbers::pi, end * std::numbers::pi / 180 + 1e-6);
+}
+
+}  // namespace clerestory

@@ -132,7 +132,7 @@ TEST(TraceLinks, MembersOfAClusterReceiveByTheirOrientation) {
   for (std::size_t i = 12; i < B.size(); ++i) {
     // From the centre of a cube: 0.5541 to the face ahead, the rest in equal parts to the four around it.
     const double z = l.patches.normal[i].z, exact = z > 0.5 ? 0.5541 : z < -0.5 ? 0 : 0.1115;
-    EXPECT_NEAR(E[i][0], exact, 0.06) << "z " << z;  // the parts of the sphere are 0.17 sr wide
+    EXPECT_NEAR(E[i][0], exact, 0.03) << "z " << z;  // the parts of the sphere are 0.17 sr wide
   }
 }
 

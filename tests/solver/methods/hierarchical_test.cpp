@@ -85,9 +85,8 @@ TEST(Hierarchical, ClosedRoomsKeepTheirEnergyAndMean) {
     for (std::size_t i = 0; i < room.patches.patch_count(); ++i) emitted += room.patches.area[i] * room.patches.M[i][0];
     // One reflectance: mean E = emitted / ((1 - rho) A), and the imbalance is what the mean is off.
     const double exact = emitted / ((1 - rho) * room.patches.total_area());
-    EXPECT_NEAR(h.solution.energy.imbalance(), 0, 1.2e-3)
-        << "rho " << rho;  // one seed; over six the rms is 5e-4 (0.3) to 1.3e-3 (0.9)
-    EXPECT_NEAR(mean(h.elements, h.solution.E), exact, 1.2e-3 * exact) << "rho " << rho;
+    EXPECT_NEAR(h.solution.energy.imbalance(), 0, 1e-3) << "rho " << rho;
+    EXPECT_NEAR(mean(h.elements, h.solution.E), exact, 1e-3 * exact) << "rho " << rho;
     EXPECT_NEAR(h.solution.energy.emitted, emitted, 1e-9 * emitted);
   }
 }

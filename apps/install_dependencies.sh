@@ -9,6 +9,7 @@ packages=(
   libcgal-dev                             # meshing
   libassimp-dev nlohmann-json3-dev        # models and scene files in
   libvtk9-dev                             # results out
+  libopenimageio-dev                      # sky images in
   libcli11-dev                            # the command line
   libgtest-dev                            # tests
 )

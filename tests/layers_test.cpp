@@ -67,6 +67,7 @@ const std::vector<Library>& libraries() {
       {"OpenMesh", std::regex("OpenMesh/.*"), {"meshing/"}},
       {"VTK", std::regex("vtk.*"), {"io/"}},
       {"Assimp", std::regex("assimp/.*"), {"io/"}},
+      {"OpenImageIO", std::regex("OpenImageIO/.*"), {"io/"}},
       {"JSON", std::regex("nlohmann/.*"), {"io/", "apps/"}, true},
       {"TBB", std::regex("(tbb|oneapi)/.*"), {"solver/model/parallel.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"apps/"}},

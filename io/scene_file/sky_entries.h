@@ -1,6 +1,7 @@
 #pragma once
 // The "sky", "sun", "location" and "time" of a scene file.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,14 @@
 
 namespace clerestory {
 
-/// Reads all of them from the scene's root object into `lights`.
-void read_sky_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels, Lights& lights,
-                      std::vector<std::string>& warnings);
+/// Reads all of them from the scene's root object into `lights`. Weather and image files are relative to `folder`.
+///
+/// throws  InputError; also for a sky that needs the sun in a scene that does not say where it stands.
+void read_sky_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
+                      ChannelCount& channels, Lights& lights, std::vector<std::string>& warnings);
 
-/// The sky of --sky NAME[:LUX]; 10,000 lx unless it says otherwise.
+/// The sky of --sky NAME[:LUX]; 10,000 lx unless it says otherwise. Skies that need no sun: uniform, cie-overcast, and
+/// cie-general-TYPE for types 1, 3, 5 and 16.
 Sky sky_of_option(std::string_view option);
 
 }  // namespace clerestory

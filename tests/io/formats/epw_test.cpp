@@ -1,0 +1,121 @@
+#include "io/formats/epw.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "solver/model/error.h"
+#include "tests/io/weather_text.h"
+#include "tests/support/temp_folder.h"
+
+namespace clerestory {
+namespace {
+
+class Epw : public ::testing::Test {
+ protected:
+  Weather read(const std::vector<std::string>& lines) { return read_epw(folder_.write("city.epw", joined(lines))); }
+  std::string refused(const std::vector<std::string>& lines) { return refused_text(joined(lines)); }
+  std::string refused_text(const std::string& content) {
+    try {
+      read_epw(folder_.write("city.epw", content));
+      return "(it was read)";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+  /// The day with one cell of one line replaced.
+  static std::vector<std::string> with_cell(std::size_t line, std::size_t column, const std::string& value) {
+    std::vector<std::string> lines = weather_lines();
+    std::string& row = lines[line - 1];
+    std::size_t begin = 0;
+    for (; column > 0; --column) begin = row.find(',', begin) + 1;
+    row.replace(begin, std::min(row.find(',', begin), row.size()) - begin, value);
+    return lines;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Epw, HoldsPlaceAndHoursAndKnowsWhatIsMissing) {
+  const Weather weather = read(weather_lines());
+  EXPECT_EQ(weather.city, "Golden");
+  EXPECT_EQ(weather.place.latitude_deg, 39.742476);
+  EXPECT_EQ(weather.place.longitude_deg, -105.1786);
+  EXPECT_EQ(weather.place.timezone, -7);
+  ASSERT_EQ(weather.hours.size(), 24u);
+  const WeatherHour& noon = weather.at(10, 17, 13);
+  EXPECT_EQ(noon.line, 21);
+  EXPECT_EQ(noon.direct_normal, 600);
+  EXPECT_EQ(noon.diffuse_horizontal, 120);
+  EXPECT_EQ(noon.direct_normal_lux, 62000);
+  EXPECT_EQ(noon.diffuse_horizontal_lux, 16000);
+  EXPECT_EQ(noon.dew_point_c, 2);
+  EXPECT_EQ(noon.precipitable_water_cm, 1.2);
+  EXPECT_FALSE(weather.at(10, 17, 12).direct_normal_lux);
+  EXPECT_FALSE(weather.at(10, 17, 15).direct_normal);
+  EXPECT_FALSE(read(with_cell(21, 7, "99.9")).at(10, 17, 13).dew_point_c);
+}
+
+TEST_F(Epw, IsReadWithWindowsLineEndsAndAByteOrderMark) {
+  std::string content = "\xef\xbb\xbf";
+  for (const std::string& line : weather_lines()) content += line + "\r\n";
+  EXPECT_EQ(read_epw(folder_.write("city.epw", content)).hours.size(), 24u);
+}
+
+TEST_F(Epw, RefusalsNameLineAndReason) {
+  EXPECT_EQ(refused(with_cell(1, 0, "hello")),
+            "city.epw:1: begins with 'hello' and not with LOCATION; it is no EPW weather file");
+  EXPECT_EQ(refused(with_cell(1, 6, "north")), "city.epw:1: the latitude = 'north' is not a number");
+  EXPECT_EQ(refused(with_cell(1, 6, "91")), "city.epw:1: the latitude = 91 is outside [-90, 90]");
+  EXPECT_EQ(refused(with_cell(1, 8, "nan")), "city.epw:1: the time zone = nan is outside [-14, 14]");
+  EXPECT_EQ(refused(with_cell(8, 2, "4")), "city.epw:8: 4 records an hour; only hourly files are read");
+  EXPECT_EQ(refused(with_cell(8, 6, "10/32")), "city.epw:8: '10/32' is not a date; expected month/day");
+  EXPECT_EQ(refused(with_cell(8, 0, "1995")),
+            "city.epw:8: begins with '1995' and not with DATA PERIODS; the header has 8 lines");
+  EXPECT_EQ(refused(with_cell(12, 14, "-5")), "city.epw:12: the direct normal radiation = -5 is outside [0, 1e+12]");
+  EXPECT_EQ(refused(with_cell(12, 15, "")), "city.epw:12: the diffuse horizontal radiation = '' is not a number");
+  EXPECT_EQ(refused(with_cell(12, 3, "25")), "city.epw:12: the hour = 25 is outside [1, 24]");
+  EXPECT_EQ(refused(with_cell(12, 1, "1.5")), "city.epw:12: the month = 1.5 is not a whole number");
+}
+
+TEST_F(Epw, ShortLinesAndShortFilesAreRefused) {
+  std::vector<std::string> lines = weather_lines();
+  lines[11] = "2003,10,17,4,0,?9?9,11.0";
+  EXPECT_EQ(refused(lines), "city.epw:12: has 7 values; an hour has 35. The file is damaged or cut short");
+  lines = weather_lines();
+  lines.resize(20);
+  EXPECT_EQ(refused(lines), "city.epw: has 12 hours; its DATA PERIODS say 24. The file is cut short");
+  lines.resize(5);
+  EXPECT_EQ(refused(lines), "city.epw: ends after 5 lines; the header of an EPW file has 8");
+  EXPECT_EQ(refused(with_cell(8, 6, "12/31")),
+            "city.epw: has 24 hours; its DATA PERIODS say 1824. The file is cut short");
+  EXPECT_EQ(refused_text("LOCATION"), "city.epw:1: the latitude is missing: the line has 1 values");
+}
+
+TEST_F(Epw, HoursThatAreNotThereAreNamed) {
+  const Weather weather = read(weather_lines());
+  try {
+    weather.at(6, 21, 12);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "city.epw: has no hour 12 of 6/21 (month/day); it goes from 10/17 to 10/17");
+  }
+}
+
+TEST_F(Epw, OfDenverHasTheKnownSums) {
+  // ../shared/data/weather/SOURCES.md gives the sums over the year.
+  const std::filesystem::path file = std::filesystem::path(CLERESTORY_SOURCE_DIR) / ".." / "shared" / "data" /
+                                     "weather" / "USA_CO_Denver.Intl.AP.725650_TMY3.epw";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "../shared/data is not here";
+  const Weather weather = read_epw(file);
+  ASSERT_EQ(weather.hours.size(), 8760u);
+  double direct = 0, diffuse = 0;
+  for (const WeatherHour& h : weather.hours)
+    direct += h.direct_normal.value_or(0), diffuse += h.diffuse_horizontal.value_or(0);
+  EXPECT_NEAR(direct / 1000, 1977.6, 0.05);
+  EXPECT_NEAR(diffuse / 1000, 556.5, 0.05);
+  EXPECT_EQ(weather.place.timezone, -7);
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -8,7 +8,7 @@
 #include "io/input_file.h"
 #include "io/parse_json.h"
 #include "io/scene_file/json_object.h"
-#include "io/scene_file/light_entries.h"
+#include "io/scene_file/luminaire_entries.h"
 #include "io/scene_file/material_rules.h"
 #include "io/scene_file/place_model.h"
 #include "io/scene_file/sensor_entries.h"
@@ -128,7 +128,7 @@ Scene read_scene_file(const std::filesystem::path& file) {
   std::vector<MaterialRule> rules;
   // What is quick to check comes first; models may take a while.
   if (root.has("materials")) rules = read_material_rules(root.at("materials"), name, channels, scene.warnings);
-  read_light_entries(root, name, channels, scene.lights, scene.warnings);
+  read_luminaire_entries(root, name, folder, channels, scene.lights, scene.warnings);
   read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
     scene.settings =

@@ -79,7 +79,13 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
     if (material.emits())
       throw InputError(text(object.where(), ": glass does not emit; give the light to another surface"));
     if (object.has("reflectance")) {
-      warnings.push_back(text(object.place("reflectance"), " is not used: glass reflects nothing in this version"));
+      warnings.push_back(text(object.place("reflectance"),
+                              " is not used: what glass reflects follows from its index, 1.52, and is lost in it"));
+    }
+    // 0.92 is what people write for clear glass.
+    if (transmittance->value.max() > 0.925) {
+      warnings.push_back(text(object.place("transmittance"), " = ", transmittance->value.max(),
+                              " is more than the 0.918 of clear glass; taken as glass coated to reflect less"));
     }
     material.kind = MaterialKind::glass;
     material.transmittance = transmittance->value;

@@ -16,6 +16,7 @@
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/units.h"
 
 namespace clerestory {
 namespace {
@@ -354,6 +355,7 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
   F.row_error.assign(n, 0.0);
   F.closed.assign(n, false);
   F.row_filled.assign(n, false);
+  F.escapes.assign(n, 1.0);
   if (n == 0) return F;
 
   {
@@ -372,6 +374,8 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
   for (std::size_t i = 0; i < n; ++i) {
     bool all_arrives = true;
     for (int k = 0; k < closure.arrives.channels; ++k) all_arrives &= closure.arrives.at(i, k) > 1 - 1e-9;
+    const double lost = 1 - luminous_mean(closure.arrives[i]), escaped = luminous_mean(closure.escapes[i]);
+    if (lost > 0) F.escapes[i] = std::clamp(escaped / lost, 0.0, 1.0);
     F.closed[i] = all_arrives && std::abs(F.raw_row_sum[i] - 1) <= 6 * F.row_error[i];
   }
   if (options.close_rows) {

@@ -138,7 +138,10 @@ Solution FullMatrixSystem::finish(std::string method) const {
       emitted[k] = area[i] * (M + E_direct_.at(i, k));
       absorbed[k] = area[i] * (1 - rho[c][i]) * E;
       // What a half-filled row does not place has not escaped: it is left over as imbalance.
-      if (F_.row_filled[i]) escaped[k] = area[i] * radiosity * (1 - F_.row_sum[i] * F_.row_gain(i));
+      if (!F_.row_filled[i]) continue;
+      const double lost = area[i] * radiosity * (1 - F_.row_sum[i] * F_.row_gain(i));
+      escaped[k] = lost * F_.escapes[i];
+      absorbed[k] += lost - escaped[k];
     }
     const auto flux = [&](const Spectrum& s) { return channels_ == 1 ? s[0] : luminous_mean(s); };
     solution.energy.emitted += flux(emitted);

@@ -8,6 +8,7 @@
 #include <embree3/rtcore.h>
 
 #include "solver/model/parallel.h"
+#include "solver/visibility/glass_sheet.h"
 
 namespace clerestory {
 namespace {
@@ -82,19 +83,35 @@ RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float
 struct RayScene::Impl {
   Device device;
   Surfaces opaque, glass;
-  std::vector<Spectrum> glass_share;  ///< by primitive of `glass`
+  std::vector<GlassTable> glass_kinds;
+  std::vector<std::uint32_t> kind_of_glass;  ///< by primitive of `glass`
   double diameter = 0;
 
-  /// Product of the transmittances of the glass met before `length`.
-  Spectrum through_glass(const Vec3& origin, const Vec3& direction, double length) const {
+  void tabulate_glass(const PatchSet& patches) {
+    std::vector<std::uint32_t> kind_of_material(patches.materials.size(), 0xffffffff);
+    for (const std::uint32_t t : glass.of_primitive) {
+      const MaterialId material = patches.side_material[t][kFront];
+      std::uint32_t& kind = kind_of_material[material];
+      if (kind == 0xffffffff) {
+        kind = static_cast<std::uint32_t>(glass_kinds.size());
+        glass_kinds.emplace_back(patches.materials[material].transmittance);
+      }
+      kind_of_glass.push_back(kind);
+    }
+  }
+
+  /// Product of the transmittances of the glass met before `far`, each at the angle at which it is met. direction:
+  /// unit.
+  Spectrum through_glass(const Vec3& origin, const Vec3& direction, double far) const {
     Spectrum share(1.0);
     auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-    const float far_t = static_cast<float>(length), step = static_cast<float>(1e-6 * diameter);
+    const float far_t = static_cast<float>(far), step = static_cast<float>(1e-6 * diameter);
     for (float near_t = 0; near_t < far_t;) {
       RTCRayHit r = ray_hit(origin, direction, near_t, far_t);
       rtcIntersect1(glass.handle, &c, &r);
       if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
-      share *= glass_share[r.hit.primID];
+      const Vec3 n(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
+      share *= glass_kinds[kind_of_glass[r.hit.primID]].at(dot(n, direction) / length(n));
       near_t = std::max(r.ray.tfar + step, std::nextafter(r.ray.tfar, kInfinity));  // panes count once at shared edges
     }
     return share;
@@ -112,8 +129,7 @@ RayScene::RayScene(const PatchSet& patches) : impl_(std::make_unique<Impl>()) {
     impl_->opaque.build(impl_->device.handle, patches, false);
     impl_->glass.build(impl_->device.handle, patches, true);
   });
-  for (const std::uint32_t t : impl_->glass.of_primitive)
-    impl_->glass_share.push_back(patches.materials[patches.side_material[t][kFront]].transmittance);
+  impl_->tabulate_glass(patches);
 }
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;

@@ -37,7 +37,8 @@ struct SegmentPacket {
   }
 };
 
-/// Read-only, thread safe. Opaque triangles block; glass takes its share. Knows triangles only, so it stays valid when
+/// Read-only, thread safe. Opaque triangles block; glass takes its share, by the
+/// angle (glass_sheet.h). Knows triangles only, so it stays valid when
 /// make_patches() changes which sides take part.
 class RayScene {
  public:

@@ -30,6 +30,14 @@ class PatchBuilder {
     material_ = MaterialId{set_.materials.size() - 1};
     return *this;
   }
+  /// Glass for what is added from now on.
+  PatchBuilder& glass(double transmittance) {
+    Material m;
+    m.kind = MaterialKind::glass, m.transmittance = Spectrum(transmittance);
+    set_.materials.push_back(m);
+    material_ = MaterialId{set_.materials.size() - 1};
+    return *this;
+  }
   /// A new named surface for what is added from now on.
   PatchBuilder& surface(const std::string& name) {
     set_.surfaces.push_back(name);

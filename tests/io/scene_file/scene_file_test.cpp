@@ -83,6 +83,18 @@ TEST_F(SceneFile, GlassPassesItsTransmittance) {
             "s.json: materials 'wood': transmittance needs \"type\": \"glass\"");
 }
 
+TEST_F(SceneFile, GlassThatPassesMoreThanClearGlassIsTakenAsCoated) {
+  const auto warnings = [&](const std::string& transmittance) {
+    return read_with(R"("materials": { "*": { "type": "glass", "transmittance": )" + transmittance + " } }").warnings;
+  };
+  EXPECT_TRUE(warnings("0.92").empty());
+  ASSERT_EQ(warnings("0.98").size(), 1u);
+  EXPECT_EQ(
+      warnings("0.98").front(),
+      "s.json: materials '*': transmittance = 0.98 is more than the 0.918 of clear glass; taken as glass coated to "
+      "reflect less");
+}
+
 TEST_F(SceneFile, LuminairesArePointsWithTheirFluxDimmedAndGrouped) {
   const Scene scene = read_with(R"("luminaires": [
       { "type": "point", "position": [1, 2, 3], "luminous_flux": 358, "dimming": 0.5, "group": "desk", "name": "bulb" },

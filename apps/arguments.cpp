@@ -48,7 +48,9 @@ void add_input_options(CLI::App& command, std::string& input, ReadOptions& optio
   add_choice(command, "--up", options.up, {"y", "z"},
              "axis that points up in a model given directly (default: what the file says, else z)");
   command
-      .add_option("--sky", options.sky, "sky for a model given directly: uniform or cie-overcast, lux on open ground")
+      .add_option("--sky", options.sky,
+                  "sky for a model given directly: uniform, cie-overcast, cie-general-1, -3, -5 or -16; lux on open "
+                  "ground (default: 10000)")
       ->type_name("NAME[:LUX]");
 }
 

@@ -47,6 +47,24 @@ void say_materials(const Scene& scene, Console& console) {
     if (!faces[i]) console.say("  material '" + scene.materials[i].name + "': not used by any face");
 }
 
+std::string describe(SkyModel model) {
+  switch (model) {
+    case SkyModel::uniform:
+      return "uniform";
+    case SkyModel::cie_overcast:
+      return "CIE overcast";
+    case SkyModel::cie_clear:
+      return "CIE clear";
+    case SkyModel::cie_general:
+      return "CIE general";
+    case SkyModel::perez:
+      return "Perez";
+    case SkyModel::image:
+      return "image";
+  }
+  return "";
+}
+
 void say_lights(const Scene& scene, Console& console) {
   const Lights& l = scene.lights;
   for (const auto& p : l.points)
@@ -57,8 +75,7 @@ void say_lights(const Scene& scene, Console& console) {
     console.say("  light    luminaire '" + w.name + "' of " + w.web->name + ", " +
                 rounded(photometric(w.scale) * w.web->flux) + " lm");
   if (l.sky)
-    console.say(std::string("  light    ") + (l.sky->model == SkyModel::uniform ? "uniform" : "CIE overcast") +
-                " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +
+    console.say("  light    " + describe(l.sky->model) + " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +
                 " lx on open ground, ground reflectance " + rounded(l.sky->ground_reflectance));
   for (const auto& s : l.suns)
     console.say("  light    sun from (" + rounded(s.direction.x) + ", " + rounded(s.direction.y) + ", " +

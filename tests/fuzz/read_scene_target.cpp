@@ -33,11 +33,26 @@ void check(const Scene& scene) {
     require(m.transmittance.min() >= 0 && m.transmittance.max() <= 1, "a transmittance is outside [0, 1]");
     require(m.exitance.min() >= 0 && std::isfinite(m.exitance.max()), "an exitance is negative or infinite");
   }
+  if (const auto& sky = scene.lights.sky) {
+    require(sky->horizontal_irradiance.min() >= 0 && std::isfinite(sky->horizontal_irradiance.max()),
+            "the sky's light is negative or infinite");
+    require(std::abs(length(sky->sun) - 1) < 1e-9, "the sky's sun has no direction");
+  }
+  for (const Sun& sun : scene.lights.suns) {
+    require(std::abs(length(sun.direction) - 1) < 1e-9, "a sun has no direction");
+    require(sun.normal_irradiance.min() >= 0 && std::isfinite(sun.normal_irradiance.max()),
+            "a sun's light is negative or infinite");
+  }
 }
 
 /// What scene files of the corpus name.
 void write_neighbours() {
   std::ofstream(fuzz_folder() / "room.obj") << "o floor\nusemtl floor\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  std::ofstream weather(fuzz_folder() / "city.epw");
+  weather << "LOCATION,City,-,-,made up,0,48.8,2.3,1,75\n1\n2\n3\n4\n5\n6\nDATA PERIODS,1,1,Data,Saturday,3/21,3/21\n";
+  for (int hour = 1; hour <= 24; ++hour)
+    weather << "2026,3,21," << hour
+            << ",0,?,9,3,50,101300,0,0,300,600,700,130,999999,999999,999999,0,0,0,0,0,0,0,0,0,12,0,0\n";
   std::ofstream(fuzz_folder() / "points.csv") << "x,y,z,nx,ny,nz\n0.5,0.5,0.8,0,0,1\n";
 }
 

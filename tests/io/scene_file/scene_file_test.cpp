@@ -342,9 +342,6 @@ TEST_F(SceneFile, WhatALaterVersionReadsIsNamedAsSuch) {
   EXPECT_NE(wood_refusal(R"({ "type": "diffuser", "transmittance": 0.3 })")
                 .find("'diffuser' is not available in this version"),
             std::string::npos);
-  EXPECT_EQ(
-      refusal_with(R"("sky": { "model": "blue" })"),
-      "s.json: sky.model 'blue' is not known; known are uniform, cie-overcast, cie-clear, cie-general, perez, image");
 }
 
 TEST_F(SceneFile, MissingMembersAreNamed) {

@@ -236,6 +236,12 @@ TEST_F(SkyEntries, MissingKeysAreNamed) {
             std::string::npos);
 }
 
+TEST_F(SkyEntries, UnknownModelsListTheKnownOnes) {
+  EXPECT_EQ(
+      refusal_with(R"("sky": { "model": "blue" })"),
+      "s.json: sky.model 'blue' is not known; known are uniform, cie-overcast, cie-clear, cie-general, perez, image");
+}
+
 TEST_F(SkyEntries, ValuesOutOfRangeAreRefused) {
   EXPECT_EQ(refusal_with(R"("sky": { "model": "cie-general", "type": 17 })"),
             "s.json: sky.type = 17 is outside [1, 16]; the CIE numbers its general skies 1 to 16.");

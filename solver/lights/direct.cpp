@@ -28,42 +28,46 @@ class PatchSampler {
         options_(options) {}
 
   const Vec3& normal() const { return normal_; }
+  Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
   bool any_corner(const auto& predicate) const { return std::any_of(corners_.begin(), corners_.end(), predicate); }
 
   /// What the lamp can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
   template <class Lamp>
   double estimate(const Lamp& lamp) const {
     if (!any_corner([&](const Vec3& c) { return dot(normal_, lamp.position - c) > -reach(lamp); })) return 0;
-    const Vec3 centre = (corners_[0] + corners_[1] + corners_[2]) / 3;
+    const Vec3 middle = centre();
     double sum = 0, size2 = 0;
-    for (const Vec3& p : {corners_[0], corners_[1], corners_[2], centre}) {
+    for (const Vec3& p : {corners_[0], corners_[1], corners_[2], middle}) {
       sum += luminous_mean(open_irradiance(lamp, p, normal_));
-      size2 = std::max(size2, dot(p - centre, p - centre));
+      size2 = std::max(size2, dot(p - middle, p - middle));
     }
     // A beam may miss the four points; and a lamp in the middle of the patch is not as bright as it seems from there.
-    const Vec3 d = lamp.position - centre;
+    const Vec3 d = lamp.position - middle;
     const double all_round = luminous_mean(power(lamp)) / (4 * std::numbers::pi * (dot(d, d) + size2));
     return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
   }
 
   template <class Open, class End>
-  Spectrum mean(const Open& open_at, const End& end_for) const {
-    return mean_of_choice([&](const Vec3& p, double u, double v, const auto&) {
-      const Vec3 end = end_for(p, u, v);
-      return std::pair(end, open_at(p, end));
-    });
+  Spectrum mean(const Open& open_at, const End& end_for, bool wide = false) const {
+    return mean_of_choice(
+        [&](const Vec3& p, double u, double v, const auto&) {
+          const Vec3 end = end_for(p, u, v);
+          return std::pair(end, open_at(p, end));
+        },
+        wide);
   }
 
   /// The same where light(point, u, v, pick) gives the end and the irradiance together; pick() is a number to choose
-  /// by.
+  /// by. wide: the light comes from all over an opening, which sixteen rays know to a few per cent only.
   template <class Light>
-  Spectrum mean_of_choice(const Light& light) const {
+  Spectrum mean_of_choice(const Light& light, bool wide) const {
     if (options_.edge_rays <= options_.lamp_rays) return look(key_, options_.lamp_rays, light).sum / options_.lamp_rays;
     // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
     // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
     const Tally pilot = look(mix_bits(key_), options_.lamp_rays, light);
     const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
-    const int rays = on_an_edge ? options_.edge_rays : options_.lamp_rays;
+    const int rays =
+        on_an_edge ? options_.edge_rays : std::min(options_.edge_rays, options_.lamp_rays * (wide ? 4 : 1));
     return look(key_, rays, light).sum / rays;
   }
 
@@ -115,7 +119,8 @@ Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
   if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > -reach(lamp); }))
     return Spectrum(0.0);
   return patch.mean([&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
-                    [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); });
+                    [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); },
+                    opening_rays(lamp, patch.centre()) > 4);
 }
 
 /// The luminaires over one patch. Those that give much of its light are looked at one by one; the others, however many,
@@ -132,15 +137,17 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
   struct Over {
     std::uint32_t number;
     double gives;  ///< estimate without blockers, > 0 where the lamp can give anything [W/m2]
+    bool wide;     ///< from all over an opening
   };
   thread_local std::vector<Over> over;
   over.clear();
   double all = 0;
   for_each_lamp(lights, [&](const auto& lamp, std::size_t number) {
     const double gives = patch.estimate(lamp);
-    if (gives > 0) over.push_back({static_cast<std::uint32_t>(number), gives});
+    if (gives > 0) over.push_back({static_cast<std::uint32_t>(number), gives, opening_rays(lamp, patch.centre()) > 4});
     all += gives;
   });
+  bool wide = false;
   double shared = 0;  // becomes the running sum over lamps that share rays
   std::size_t kept = 0;
   for (const Over& lamp : over) {
@@ -148,7 +155,8 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
       with_lamp(lights, lamp.number, [&](const auto& l) { E += from_lamp(patch, l); });
     } else {
       shared += lamp.gives;
-      over[kept++] = {lamp.number, shared};
+      wide = wide || lamp.wide;
+      over[kept++] = {lamp.number, shared, false};
     }
   }
   over.resize(kept);
@@ -158,14 +166,16 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
                                      [](double x, const Over& lamp) { return x < lamp.gives; });
     return static_cast<std::size_t>(std::min(at, over.end() - 1) - over.begin());
   };
-  return E + patch.mean_of_choice([&](const Vec3& p, double u, double v, const auto& pick) {
-    const std::size_t k = chosen(pick());
-    const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
-    return with_lamp(lights, over[k].number, [&](const auto& lamp) {
-      const Vec3 q = light_point(lamp, p, u, v);
-      return std::pair(q, open_irradiance(lamp, q, p, patch.normal()) / probability);
-    });
-  });
+  return E + patch.mean_of_choice(
+                 [&](const Vec3& p, double u, double v, const auto& pick) {
+                   const std::size_t k = chosen(pick());
+                   const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
+                   return with_lamp(lights, over[k].number, [&](const auto& lamp) {
+                     const Vec3 q = light_point(lamp, p, u, v);
+                     return std::pair(q, open_irradiance(lamp, q, p, patch.normal()) / probability);
+                   });
+                 },
+                 wide);
 }
 
 Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {

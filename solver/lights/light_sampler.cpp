@@ -212,9 +212,9 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
         return;
       }
       for (int k = 0; k < count; ++k) {
-        const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
-        const Vec3 q = light_point(lamp, p, u[0], u[1]);
-        look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) / count);
+        const OpeningPlace at = opening_place(lamp, k, count);
+        const Vec3 q = light_point(lamp, p, at.u, at.v);
+        look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight);
       }
     });
   }

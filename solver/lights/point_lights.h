@@ -29,6 +29,10 @@ int opening_rays(const Lamp&, const Vec3&) {
   return 1;
 }
 template <class Lamp>
+OpeningPlace opening_place(const Lamp&, int, int) {
+  return {};
+}
+template <class Lamp>
 Vec3 light_point(const Lamp& lamp, const Vec3&, double, double) {
   return lamp.position;
 }

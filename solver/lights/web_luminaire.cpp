@@ -5,10 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/form_factors/gauss_legendre.h"
+
 namespace clerestory {
 namespace {
 
-constexpr double kNear = 5;               // lengths of the opening, nearer than which it counts
+constexpr double kNear = 10;              // lengths of the opening, nearer than which it counts: a point errs by 0.3 %
 constexpr double kSmallestShare = 256.0;  // of the opening, that one point stands for
 
 double largest_length(const Vec3& size) { return std::max({size.x, size.y, size.z}); }
@@ -55,7 +57,39 @@ int opening_rays(const WebLuminaire& lamp, const Vec3& p) {
   const auto beside = [](double x, double limit) { return std::max(0.0, std::abs(x) - limit); };
   const double gap = length({beside(at.x, half.x), beside(at.y, half.y), beside(at.z, half.z)});
   const double size = largest_length(lamp.web->opening.size);
-  return gap >= size / 2 ? 16 : gap >= size / 4 ? 64 : 256;
+  const Vec3 d = p - lamp.position;
+  if (dot(d, d) >= 25 * size * size) return 4;
+  return gap >= size ? 16 : gap >= size / 2 ? 64 : 256;
+}
+
+OpeningPlace opening_place(const WebLuminaire& lamp, int k, int count) {
+  static const GaussLegendre<1> one;
+  static const GaussLegendre<2> two;
+  static const GaussLegendre<4> four;
+  static const GaussLegendre<8> eight;
+  static const GaussLegendre<16> sixteen;
+  static const GaussLegendre<32> thirty_two;
+  const Face f = face(lamp);
+  const auto place = [&](const auto& across, const auto& along) -> OpeningPlace {
+    const std::size_t n = along.node.size(), i = static_cast<std::size_t>(k) / n, j = static_cast<std::size_t>(k) % n;
+    const double x = (1 + across.node[i]) / 2, y = (1 + along.node[j]) / 2, turn = 1.0 / static_cast<double>(n);
+    if (f.round) return {x, (static_cast<double>(j) + 0.5) * turn, across.weight[i] / 2 * turn};  // even around
+    const double weight = across.weight[i] * along.weight[j] / 4;
+    return f.a <= f.b ? OpeningPlace{x, y, weight} : OpeningPlace{y, x, weight};
+  };
+  const bool tube = !f.round && std::max(f.a, f.b) > 3 * std::min(f.a, f.b);  // its shadows are as long
+  switch (count) {
+    case 1:
+      return {};
+    case 4:
+      return tube ? place(one, four) : place(two, two);
+    case 16:
+      return tube ? place(two, eight) : place(four, four);
+    case 64:
+      return tube ? place(four, sixteen) : place(eight, eight);
+    default:
+      return tube ? place(eight, thirty_two) : place(sixteen, sixteen);
+  }
 }
 
 Vec3 light_point(const WebLuminaire& lamp, const Vec3& p, double u, double v) {

@@ -14,9 +14,16 @@ Spectrum power(const WebLuminaire& lamp);
 /// Largest distance of a point of the opening from the centre [m].
 double reach(const WebLuminaire& lamp);
 
-/// How many rays the opening is worth at p: 1 where p is farther away than five times its largest length, else 16, and
-/// up to 256 where p is nearer than that length.
+/// How many rays the opening is worth at p: 1 where p is farther away than ten times its largest length, 4 up to five
+/// times, else 16, and up to 256 where p is nearer than that length.
 int opening_rays(const WebLuminaire& lamp, const Vec3& p);
+
+/// Place k of `count` on the opening for light_point(), and its weight; the weights sum to 1. Gauss points: what varies
+/// smoothly over the opening is integrated to a fraction of what as many random points would miss.
+struct OpeningPlace {
+  double u = 0.5, v = 0.5, weight = 1;
+};
+OpeningPlace opening_place(const WebLuminaire& lamp, int k, int count);
 
 /// Where light for p comes from: the centre, or near by the point of the opening that u and v choose, in [0, 1), even
 /// over the two larger of its three lengths.

@@ -31,7 +31,7 @@ struct SpotLuminaire {
   double inner_angle = 0, outer_angle = 0;  ///< half-angles [rad]
 };
 
-/// Luminaire of a photometric file. Nearer than five times its opening's largest length its light comes from the whole
+/// Luminaire of a photometric file. Nearer than ten times its opening's largest length its light comes from the whole
 /// opening, farther away from the centre.
 struct WebLuminaire {
   std::string name;

@@ -63,9 +63,9 @@ void add_choice(CLI::App& command, const std::string& name, std::optional<std::s
   }));
 }
 
-void add_checked_word(CLI::App& command, const std::string& name, std::optional<std::string>& value,
-                      const std::function<std::string(const std::string&)>& problem, const std::string& help) {
-  command.add_option(name, value, help)->type_name("NAME")->check(silent(problem));
+CLI::Option* add_checked_word(CLI::App& command, const std::string& name, std::optional<std::string>& value,
+                              const std::function<std::string(const std::string&)>& problem, const std::string& help) {
+  return command.add_option(name, value, help)->type_name("NAME")->check(silent(problem));
 }
 
 void add_positive_option(CLI::App& command, const std::string& name, std::optional<double>& value,

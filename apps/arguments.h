@@ -11,7 +11,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace clerestory {
 
@@ -33,8 +34,8 @@ void add_choice(CLI::App& command, const std::string& name, std::optional<std::s
                 const std::vector<std::string>& choices, const std::string& help);
 
 /// An option that takes a name; `problem` says why not, or nothing.
-void add_checked_word(CLI::App& command, const std::string& name, std::optional<std::string>& value,
-                      const std::function<std::string(const std::string&)>& problem, const std::string& help);
+CLI::Option* add_checked_word(CLI::App& command, const std::string& name, std::optional<std::string>& value,
+                              const std::function<std::string(const std::string&)>& problem, const std::string& help);
 
 /// An option that takes a number above 0, with its unit in the help.
 void add_positive_option(CLI::App& command, const std::string& name, std::optional<double>& value,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "io/memory_size.h"
 #include "io/scene_file/nearest_name.h"
 #include "solver/model/error.h"
 
@@ -35,6 +36,10 @@ std::optional<T> first_of(const std::optional<T>& a, const std::optional<T>& b) 
 std::string problem_with_method(const std::string& name) { return problem_with(name, kMethodNames, "method"); }
 std::string problem_with_accuracy(const std::string& name) { return problem_with(name, kAccuracyNames, "accuracy"); }
 
+std::string problem_with_memory(const std::string& size) {
+  return to_memory_size(size) ? "" : "'" + size + "' is no amount of memory; " + std::string(kMemorySizes) + ".";
+}
+
 Settings effective_settings(const CommonArguments& common, const SolveArguments& arguments, const Scene& scene) {
   const SolverSettings& file = scene.settings;
   Settings s;
@@ -51,6 +56,7 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   s.mesh.target_triangles = target_triangles(s.solve.method, s.solve.accuracy);
   s.target_error = first_of(arguments.target_error, file.target_error);
   s.time_limit = first_of(arguments.time_limit, file.time_limit);
+  s.memory_limit = arguments.memory_limit ? to_memory_size(*arguments.memory_limit) : file.memory_limit;
   s.channels = scene.channels();
   if (arguments.channels) s.channels = *arguments.channels == "1" ? 1 : 3;
   if (arguments.grey) s.channels = 1;
@@ -71,6 +77,7 @@ std::vector<Figure> as_figures(const Settings& s, const ReadOptions& read) {
   if (s.mesh.max_element) out.push_back({"max_element", *s.mesh.max_element});
   if (s.target_error) out.push_back({"target_error", *s.target_error});
   if (s.time_limit) out.push_back({"time_limit", *s.time_limit});
+  if (s.memory_limit) out.push_back({"memory_limit", static_cast<long long>(*s.memory_limit)});
   if (read.unit) out.push_back({"unit", *read.unit});
   if (read.up) out.push_back({"up", *read.up});
   if (read.sky) out.push_back({"sky", *read.sky});

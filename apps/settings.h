@@ -17,14 +17,16 @@ namespace clerestory {
 struct SolveArguments {
   std::optional<std::string> method, accuracy, channels;
   std::optional<double> max_element, target_error, time_limit;
+  std::optional<std::string> memory_limit;
   bool grey = false;
 };
 
 struct Settings {
   SolveOptions solve;
   MeshOptions mesh;
-  std::optional<double> target_error;  ///< RMS relative [1]
-  std::optional<double> time_limit;    ///< [s]
+  std::optional<double> target_error;       ///< RMS relative [1]
+  std::optional<double> time_limit;         ///< [s]
+  std::optional<std::size_t> memory_limit;  ///< [bytes]
   int channels = 1;
 
   /// For the next try at the target error: elements of half the area, twice the rays.
@@ -34,6 +36,8 @@ struct Settings {
 /// Why a name is not a method or an accuracy, with the nearest one; empty when it is.
 std::string problem_with_method(const std::string& name);
 std::string problem_with_accuracy(const std::string& name);
+/// Why a text is no amount of memory; empty when it is.
+std::string problem_with_memory(const std::string& size);
 
 /// throws  InputError naming the method or accuracy that is not known, and the nearest one.
 Settings effective_settings(const CommonArguments& common, const SolveArguments& arguments, const Scene& scene);

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "apps/wording.h"
+#include "solver/form_factors/form_factor_matrix.h"
+#include "solver/memory_estimate.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -34,6 +36,13 @@ std::string error_line(const MeasuredError& e) {
          percent(e.p95_relative) + where;
 }
 
+std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
+  const std::size_t sides = 2 * c.triangles - c.dark_sides;
+  const bool has_matrix = s.solution.method == "gauss-seidel" || s.solution.method == "jacobi";
+  return (has_matrix ? form_factor_bytes(c.elements) : 0) +
+         predicted_memory({s.repairs.input_triangles, c.triangles, sides, c.elements, c.points, c.links});
+}
+
 }  // namespace
 
 void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
@@ -46,10 +55,12 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.counts.points = s.lightmap.position.size();
   r.counts.sensors = s.sensor_E.size();
   r.counts.rays = s.solution.rays;
+  r.predicted_memory_bytes = predicted(r.counts, s);
   r.iterations = s.solution.iterations;
   r.residual = s.solution.residual;
   r.energy = s.solution.energy;
   r.stop = s.solution.stop;
+  r.log = s.solution.log;
   r.repairs = s.repairs;
   r.error = figures_of(s.error);
   r.error_sensors = figures_of(s.error_sensors);

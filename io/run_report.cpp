@@ -108,6 +108,7 @@ std::vector<Figure> repeatable_figures(const RunReport& r) {
                          {"counts.points", count(c.points)},
                          {"counts.sensors", count(c.sensors)},
                          {"counts.dark_sides", count(c.dark_sides)},
+                         {"predicted_memory_bytes", count(r.predicted_memory_bytes)},
                          {"iterations", static_cast<long long>(r.iterations)},
                          {"residual", r.residual},
                          {"stop", stop_name(r.stop)},
@@ -126,6 +127,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   for (const Figure& figure : repeatable_figures(report)) set(json, figure);
   for (const Figure& figure : run_figures(report)) set(json, figure);
   if (!report.error) json["error"] = nullptr;  // asked for by readers even when there was no time to measure
+  json["log"] = report.log;
   json["warnings"] = report.warnings;
   json["left_out"] = report.left_out;
   // Names from models may hold bytes that are no UTF-8; they must not stop the report.

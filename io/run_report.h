@@ -34,6 +34,7 @@ struct RunReport {
            total = 0;
   } seconds;
   std::size_t peak_memory_bytes = 0;
+  std::size_t predicted_memory_bytes = 0;  ///< what the counts let expect
   long iterations = 0;
   double residual = 0;  ///< [1]
   EnergyBalance energy;
@@ -45,6 +46,7 @@ struct RunReport {
   std::optional<ErrorFigures> error, error_sensors;  ///< empty when not measured
   StopReason stop = StopReason::converged;
   MeshReport repairs;
+  std::vector<std::string> log;  ///< a line for each round of the solver; the last ones tell what a stopped run shows
   std::vector<std::string> warnings;
   std::vector<std::string> left_out;  ///< what the scene did not need, so was not computed
 };

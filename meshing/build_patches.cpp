@@ -26,9 +26,9 @@ double total_area(const FaceComplex& complex) {
   return area;
 }
 
-/// The bound on edges that is in force, in the working frame.
-double longest_element(const Scene& scene, const FaceComplex& complex, const std::vector<PlanarDomain>& domains,
-                       const MeshOptions& options) {
+/// The bound on edges that was asked for, in the working frame.
+double asked_element(const Scene& scene, const FaceComplex& complex, const std::vector<PlanarDomain>& domains,
+                     const MeshOptions& options) {
   const double area = total_area(complex);
   // A mesh of edges up to h has triangles of 0.21 h2 in the mean; area alone decides, so that the choice scales.
   if (!options.max_element) return std::sqrt(area / (0.21 * std::max(1.0, options.target_triangles)));
@@ -40,7 +40,7 @@ double longest_element(const Scene& scene, const FaceComplex& complex, const std
   }
   const double longest = *options.max_element / complex.size;
   const double count = estimate_triangles(complex, domains, area, longest);
-  if (count > kMostTriangles) {
+  if (!options.fit_triangles && count > kMostTriangles) {
     double enough = longest;
     while (estimate_triangles(complex, domains, area, enough) > kMostTriangles && enough < 2) enough *= 1.1;
     char text[240];
@@ -51,6 +51,16 @@ double longest_element(const Scene& scene, const FaceComplex& complex, const std
         *options.max_element, count / 1e6, kMostTriangles / 1e6, enough * complex.size);
     throw InputError(scene.file + text);
   }
+  return longest;
+}
+
+/// The one that is in force.
+double longest_element(const Scene& scene, const FaceComplex& complex, const std::vector<PlanarDomain>& domains,
+                       const MeshOptions& options) {
+  double longest = asked_element(scene, complex, domains, options);
+  if (!options.fit_triangles) return longest;
+  const double area = total_area(complex), most = std::min(kMostTriangles, *options.fit_triangles);
+  while (longest < 2 && estimate_triangles(complex, domains, area, longest) > most) longest *= 1.1;
   return longest;
 }
 

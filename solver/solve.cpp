@@ -5,6 +5,7 @@
 #include "solver/closure.h"
 #include "solver/form_factors/form_factor_matrix.h"
 #include "solver/lights/direct.h"
+#include "solver/memory_estimate.h"
 #include "solver/methods/gauss_seidel.h"
 #include "solver/methods/jacobi.h"
 #include "solver/methods/path.h"
@@ -42,9 +43,16 @@ int paths_per_point(const SolveOptions& options) {
 }
 
 Solution solve(const Problem& problem, const SolveOptions& options, const Monitor& monitor) {
+  FormFactorOptions matrix_options{.seed = options.seed};
+  if (options.memory_limit > 0) {
+    const std::size_t sides = problem.patches.patch_count();
+    const std::size_t rest = predicted_memory(
+        {.triangles = problem.patches.triangle_count(), .sides = sides, .elements = sides, .points = sides});
+    matrix_options.memory_limit = options.memory_limit > rest ? options.memory_limit - rest : 1;
+  }
   // Before anything is computed: a matrix that does not fit is no news to wait for.
   if (options.method == Method::gauss_seidel || options.method == Method::jacobi)
-    require_matrix_fits(problem.patches.patch_count());
+    require_matrix_fits(problem.patches.patch_count(), matrix_options);
   const Illumination light(problem);
   const int more = 1 << options.tighten;
   const DirectOptions direct_options{.lamp_rays = by_accuracy(options.accuracy, 16, 16, 64),
@@ -65,7 +73,8 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
                                        .rays_per_patch = by_accuracy(options.accuracy, 64, 256, 1024) * 1.0 * more,
                                        .seed = options.seed};
       Solution solution = shoot(problem, direct, closure(), shoot_options, monitor);
-      const GatherQuality quality{.rays = 256, .most_rays = by_accuracy(options.accuracy, 256, 512, 1024), .lamp_rays = 64};
+      const GatherQuality quality{
+          .rays = 256, .most_rays = by_accuracy(options.accuracy, 256, 512, 1024), .lamp_rays = 64};
       const std::size_t gathered = gather_noisy_patches(problem, solution, kFewestRays, quality, options.seed, monitor);
       solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
       return solution;
@@ -74,7 +83,7 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
       return path_trace(light, direct, closure(), {paths_per_point(options), options.seed}, monitor);
     case Method::gauss_seidel:
     case Method::jacobi: {
-      const FormFactorMatrix F = form_factor_matrix(problem.patches, problem.rays, {.seed = options.seed}, monitor);
+      const FormFactorMatrix F = form_factor_matrix(problem.patches, problem.rays, matrix_options, monitor);
       const auto gather = options.method == Method::jacobi ? jacobi : gauss_seidel;
       Solution solution = gather(problem.patches, F, direct.E, {}, monitor);
       count_luminaires(solution.energy, problem.patches, direct);

@@ -14,7 +14,8 @@ struct SolveOptions {
   Method method = Method::hierarchical;
   Accuracy accuracy = Accuracy::standard;
   std::uint64_t seed = 1;
-  int tighten = 0;  ///< times that the ray counts were doubled to reach a target error
+  std::size_t memory_limit = 0;  ///< the peak of the process stays below by making the result coarser [bytes]; 0: none
+  int tighten = 0;               ///< times that the ray counts were doubled to reach a target error
 };
 
 /// Triangles to aim for when no longest edge is given; few where elements are halved later.

@@ -5,6 +5,7 @@
 
 #include "solver/gather.h"
 #include "solver/hierarchy/vertex_field.h"
+#include "solver/memory_estimate.h"
 #include "solver/methods/hierarchical.h"
 #include "solver/model/units.h"
 
@@ -31,6 +32,21 @@ Detail detail(const SolveOptions& options) {
       return {512 * more, 512 * more, 0.05, 0.0125 * finer, 1.0 / 16};
   }
   return {};
+}
+
+MemoryCounts whole(const Problem& problem, const VertexLightmap& map) {
+  const std::size_t sides = problem.patches.patch_count();
+  return {
+      .triangles = problem.patches.triangle_count(), .sides = sides, .elements = sides, .points = map.position.size()};
+}
+
+/// The detail that was asked for, or what a limit of memory leaves of it.
+std::optional<MemoryPlan> memory_plan(const Problem& problem, const VertexLightmap& map, const SolveOptions& options) {
+  const Detail d = detail(options);
+  const MemoryPlan wish{20 * map.position.size() + 10'000, HierarchyOptions{}.most_elements, d.bundle_rays,
+                        d.lamp_rays};
+  if (options.memory_limit == 0) return wish;
+  return plan_memory(whole(problem, map), wish, options.memory_limit);
 }
 
 /// Irradiance of the leaves from that at their vertices. Leaves of element j of the transport are those of its own that
@@ -93,15 +109,22 @@ void fill_unreached(const ElementMesh& mesh, const std::vector<std::uint32_t>& t
 
 }  // namespace
 
+bool has_memory_for(const Problem& problem, const VertexLightmap& map, const SolveOptions& options) {
+  if (options.method == Method::hierarchical) return memory_plan(problem, map, options).has_value();
+  return options.memory_limit == 0 || predicted_memory(whole(problem, map)) <= options.memory_limit;
+}
+
 ShownSolution solve_hierarchical(const Problem& problem, const VertexLightmap& map, double longest_edge,
                                  const SolveOptions& options, const Monitor& monitor) {
   const Detail d = detail(options);
+  const MemoryPlan plan = memory_plan(problem, map, options).value_or(MemoryPlan{0, 0, 32, 16});
   ElementMesh mesh(problem.patches, map);
   HierarchicalSolution coarse = hierarchical(problem, mesh,
-                                             {.bundle_rays = d.bundle_rays,
-                                              .lamp_rays = d.lamp_rays,
+                                             {.bundle_rays = plan.bundle_rays,
+                                              .lamp_rays = plan.lamp_rays,
                                               .tolerance = d.element_tolerance,
                                               .shortest_edge = d.finest * longest_edge,
+                                              .most_elements = plan.most_elements,
                                               .seed = options.seed},
                                              monitor);
   const std::vector<std::uint32_t> transport_leaves = mesh.leaves();
@@ -109,7 +132,7 @@ ShownSolution solve_hierarchical(const Problem& problem, const VertexLightmap& m
   VertexField field = gather_field(transport, coarse.solution.B, mesh,
                                    {.tolerance = d.vertex_tolerance,
                                     .shortest_edge = d.finest * longest_edge,
-                                    .most_points = 20 * map.position.size() + 10'000,
+                                    .most_points = plan.most_points,
                                     .quality = vertex_quality(options),
                                     .seed = options.seed},
                                    monitor);

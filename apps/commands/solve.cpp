@@ -1,7 +1,9 @@
 // clerestory solve: the main job, from a model and its light to a picture of where the light goes.
 
+#include <algorithm>
 #include <chrono>
 #include <new>
+#include <tuple>
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +19,7 @@
 #include "io/write_sensors.h"
 #include "meshing/make_lightmap.h"
 #include "solver/gather.h"
+#include "solver/memory_estimate.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
 #include "solver/solve_hierarchical.h"
@@ -64,27 +67,88 @@ PointIrradiance gather_all_sensors(const Problem& problem, const Solution& solut
   return gather_at_sensors(problem, solution, sensors, options, {.progress = monitor.progress});
 }
 
+/// Memory that a limit leaves for the solve, when the model has been read.
+std::size_t memory_after_reading(std::size_t limit, const MeshReport& repairs) {
+  const std::size_t reading = predicted_memory({repairs.input_triangles}) - predicted_memory({});
+  return limit > reading ? limit - reading : 1;
+}
+
+[[noreturn]] void refuse_memory(const Scene& scene, std::size_t needed, std::size_t limit) {
+  throw InputError(scene.file + ": needs about " + bytes(needed) + ", more than the memory limit of " + bytes(limit) +
+                   "; raise --memory-limit, or leave out detail of the model.");
+}
+
+/// What is solved.
+struct Prepared {
+  PatchSet patches;
+  MeshReport repairs;
+  LitSides lit_sides;
+  VertexLightmap map;
+};
+
+/// Meshes, and drops the sides that light cannot reach; while that is too much for the memory limit, again with larger
+/// elements. `settings` end as they are in force. Nothing after Ctrl-C.
+std::optional<Prepared> prepare(const Scene& scene, Settings& settings, std::optional<RayScene>& rays,
+                                RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
+  const std::size_t limit = settings.memory_limit.value_or(0);
+  const std::size_t faces = scene.polygons.face_count();
+  const double asked = settings.mesh.max_element.value_or(0), wanted = settings.mesh.target_triangles;
+  if (limit > 0) {
+    const std::size_t fit = triangles_that_fit(faces, limit);
+    if (fit == 0) refuse_memory(scene, least_memory({faces, faces, faces, faces, faces}), limit);
+    settings.mesh.fit_triangles = static_cast<double>(fit);
+  }
+  for (std::size_t last = 0;;) {
+    Lap lap;
+    Prepared p;
+    std::tie(p.patches, p.repairs) = [&] {
+      MeshedScene meshed = build_patches(scene, settings.mesh, monitor);
+      return std::pair(std::move(meshed.patches), meshed.report);
+    }();
+    p.patches.channels = settings.channels;
+    lap.add_to(seconds.mesh);
+    if (monitor.is_interrupted()) return {};
+    rays.emplace(p.patches);
+    const Lights lights = to_local_frame(scene.lights, p.patches.origin);
+    p.lit_sides = find_lit_sides({p.patches, *rays, lights}, settings.solve.seed, monitor);
+    make_patches(p.patches, p.lit_sides.wanted);
+    if (p.patches.patch_count() == 0)
+      throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
+    p.map = make_lightmap(p.patches);
+    lap.add_to(seconds.build);
+    if (limit == 0) return p;
+
+    settings.solve.memory_limit = memory_after_reading(limit, p.repairs);
+    if (has_memory_for({p.patches, *rays, lights}, p.map, settings.solve)) {
+      const bool coarser = asked > 0 ? p.repairs.max_element > 1.01 * asked : *settings.mesh.fit_triangles < wanted;
+      if (coarser)
+        console.warn("coarser than asked for, to stay below the memory limit of " + bytes(limit) +
+                     ": elements of up to " + rounded(p.repairs.max_element) + " m" +
+                     (asked > 0 ? " instead of " + rounded(asked) + " m." : "."));
+      return p;
+    }
+    const std::size_t triangles = p.repairs.triangles, sides = p.patches.patch_count();
+    if (last > 0 && static_cast<double>(triangles) > 0.9 * static_cast<double>(last))
+      refuse_memory(scene, least_memory({p.repairs.input_triangles, triangles, sides, sides, p.map.position.size()}),
+                    limit);
+    last = triangles;
+    *settings.mesh.fit_triangles /= 2;
+  }
+}
+
 /// The data flow of the README: surfaces -> patches -> solution -> field on vertices and at sensors -> its error.
 /// Nothing when Ctrl-C came before there were patches to solve.
-std::optional<Solved> solve_scene(const Scene& scene, const Settings& settings, std::span<const SensorPoint> sensors,
+std::optional<Solved> solve_scene(const Scene& scene, Settings settings, std::span<const SensorPoint> sensors,
                                   RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
-  Lap lap;
-  auto [patches, repairs] = build_patches(scene, settings.mesh, monitor);
-  patches.channels = settings.channels;
-  lap.add_to(seconds.mesh);
-  if (monitor.is_interrupted()) return {};
-
-  const RayScene rays(patches);
+  std::optional<RayScene> rays;
+  std::optional<Prepared> prepared = prepare(scene, settings, rays, seconds, console, monitor);
+  if (!prepared) return {};
+  auto& [patches, repairs, lit_sides, lightmap] = *prepared;
   const Lights lights = to_local_frame(scene.lights, patches.origin);
-  const Problem problem{patches, rays, lights};
-  LitSides lit_sides = find_lit_sides(problem, settings.solve.seed, monitor);
-  make_patches(patches, lit_sides.wanted);
-  if (patches.patch_count() == 0)
-    throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
+  const Problem problem{patches, *rays, lights};
   warn_about_places(problem, scene, sensors, console);
-  lap.add_to(seconds.build);
 
-  VertexLightmap lightmap = make_lightmap(patches);
+  Lap lap;
   Solution solution;
   if (settings.solve.method == Method::hierarchical) {
     ShownSolution shown = solve_hierarchical(problem, lightmap, repairs.max_element, settings.solve, monitor);
@@ -165,12 +229,18 @@ ExitCode exit_code(const Solved& solved, const Settings& settings) {
   return kDone;
 }
 
+/// The last round that was finished before the clock or Ctrl-C, in the words of the log: ": early picture by ...".
+std::string what_is_shown(const Solution& solution) {
+  const auto stopped = std::find(solution.log.begin(), solution.log.end(), "stopped early");
+  return stopped == solution.log.begin() || stopped == solution.log.end() ? "" : ": " + *(stopped - 1);
+}
+
 void say_why(ExitCode code, const Solved& solved, const Settings& settings, Console& console) {
   if (code == kInterrupted) console.warn("interrupted; what was solved so far is written.");
   if (code != kAccuracyNotReached) return;
   if (solved.solution.stop == StopReason::time_limit)
     console.warn("the time limit of " + rounded(settings.time_limit.value_or(0)) +
-                 " s came before the end; the result so far is written.");
+                 " s came before the end; the result so far is written" + what_is_shown(solved.solution) + ".");
   else if (solved.solution.stop == StopReason::iteration_limit)
     console.warn("the method stopped before it converged, at a residual of " + percent(solved.solution.residual) +
                  "; the result so far is written.");
@@ -251,6 +321,9 @@ void add_solve_command(CLI::App& program, Task& task) {
   add_positive_option(command, "--target-error", s.target_error, "SHARE",
                       "go on until the measured RMS relative error is below this, 0.02 for 2 %");
   add_positive_option(command, "--time-limit", s.time_limit, "S", "stop solving after so many seconds");
+  add_checked_word(command, "--memory-limit", s.memory_limit, problem_with_memory,
+                   "coarser rather than more memory than this: 500MiB, 2GiB, or a number of MiB (default: none)")
+      ->type_name("SIZE");
   add_positive_option(command, "--max-element", s.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
   command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")

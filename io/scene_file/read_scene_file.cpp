@@ -6,6 +6,7 @@
 
 #include "io/formats/model.h"
 #include "io/input_file.h"
+#include "io/memory_size.h"
 #include "io/parse_json.h"
 #include "io/scene_file/json_object.h"
 #include "io/scene_file/luminaire_entries.h"
@@ -83,6 +84,17 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
   }
 }
 
+/// "2GiB", or a number of MiB.
+std::size_t read_memory_size(const JsonObject& object, std::string_view key) {
+  const Json& value = object.at(key);
+  if (!value.is_string() && !value.is_number()) refuse_type(object.place(key), "text or a number", value);
+  const std::string written = value.is_string() ? value.get<std::string>() : value.dump();
+  const auto bytes = to_memory_size(written);
+  if (!bytes)
+    throw InputError(text(object.place(key), " '", quotable(written), "' is no amount of memory; ", kMemorySizes));
+  return *bytes;
+}
+
 SolverSettings read_settings(const JsonObject& object) {
   SolverSettings settings;
   settings.method = object.choice("method", kMethodNames);
@@ -92,6 +104,7 @@ SolverSettings read_settings(const JsonObject& object) {
   settings.target_error =
       object.number("target_error", {.low = 0, .low_allowed = false, .advice = "it is relative: 0.02 is 2 %"});
   settings.time_limit = object.number("time_limit", {.low = 0, .low_allowed = false, .advice = "it is in seconds"});
+  if (object.has("memory_limit")) settings.memory_limit = read_memory_size(object, "memory_limit");
   if (const auto seed =
           object.number("seed", {.low = 0, .high = 9007199254740992.0, .advice = "it is a whole number"})) {
     if (*seed != std::floor(*seed))
@@ -131,9 +144,9 @@ Scene read_scene_file(const std::filesystem::path& file) {
   read_luminaire_entries(root, name, folder, channels, scene.lights, scene.warnings);
   read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
-    scene.settings =
-        read_settings(JsonObject(root.at("solver"), name + ": solver",
-                                 {"method", "accuracy", "max_element", "target_error", "time_limit", "seed"}));
+    scene.settings = read_settings(
+        JsonObject(root.at("solver"), name + ": solver",
+                   {"method", "accuracy", "max_element", "target_error", "time_limit", "memory_limit", "seed"}));
   }
   if (root.has("sensors")) scene.sensors = read_sensor_entries(root.at("sensors"), name, folder);
   read_geometry(root, name, folder, rules, scene);

@@ -41,6 +41,7 @@ struct SolverSettings {
   std::optional<double> max_element;   ///< [m]
   std::optional<double> target_error;  ///< RMS relative [1]
   std::optional<double> time_limit;    ///< [s]
+  std::optional<std::size_t> memory_limit;  ///< of the whole process [bytes]
   std::optional<std::uint64_t> seed;
 };
 

@@ -48,6 +48,8 @@ TEST_F(BadUsage, ExitsTwoAndSuggestsTheNearestName) {
     expect_refusal({"solve", scene_, "-o", out_, "--time-limit", value}, 2, {"--time-limit"});
     expect_refusal({"solve", scene_, "-o", out_, "--target-error", value}, 2, {"--target-error"});
   }
+  for (const char* value : {"0", "-1", "2Q", "much", "1e99", "nan", ""})
+    expect_refusal({"solve", scene_, "-o", out_, "--memory-limit", value}, 2, {"--memory-limit", "2GiB"});
   for (const char* value : {"-1", "two", "100000", "1e99"})
     expect_refusal({"solve", scene_, "-o", out_, "--threads", value}, 2, {"--threads"});
   expect_refusal({"solve", scene_, "-o", out_, "--seed", "blue"}, 2, {"--seed"});
@@ -130,6 +132,9 @@ TEST_F(BadInput, SceneFilesThatAreNotRight) {
                       {"cie-overcsat", "did you mean 'cie-overcast'?"});
   expect_room_refused(R"("materials": { "wall": { "exitance": 1 } }, "solver": { "method": "radiosity" })",
                       {"solver", "radiosity"});
+  expect_room_refused(R"("solver": { "memory_limit": "2 Q" })", {"solver.memory_limit '2 Q'", "2GiB"});
+  expect_room_refused(R"("solver": { "memory_limit": -5 })", {"solver.memory_limit '-5'"});
+  expect_room_refused(R"("solver": { "memory_limit": true })", {"solver.memory_limit"});
   expect_scene_refused(R"({ "geometry": [{ "file": "nowhere.obj" }] })", {"nowhere.obj"});
 }
 

@@ -15,6 +15,7 @@ endforeach()
 # The warnings go along because static libraries name all they were linked with; they bind nobody else.
 install(TARGETS ${libraries} clerestory_warnings EXPORT ClerestoryTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS clerestory_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS clerestory_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clerestory)
 
 # The doors, not what is behind them: these headers need the standard library only.
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/clerestory)

@@ -1,10 +1,12 @@
 #include "io/formats/sky_image.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 
+#include "io/formats/decode_image.h"
 #include "io/formats/run_apart.h"
 #include "io/input_file.h"
 #include "io/text.h"
@@ -15,29 +17,28 @@ namespace clerestory {
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = 2ull << 30;
-constexpr std::size_t kMostPixels = 64u << 20;
 
-/// 'e' and a message; or 'i', width, height and three floats a pixel.
-std::string decode(const std::string& file, const std::string& format) {
-  OIIO::attribute("threads", 1);
-  OIIO::attribute("exr_threads", -1);
-  const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(format);
-  OIIO::ImageSpec spec;
-  if (!in || !in->open(file, spec)) return "eis damaged or no " + format + " image";
-  if (spec.width <= 0 || spec.height <= 0 || spec.depth != 1 || spec.nchannels < 1) return "ehas no pixels";
-  const auto width = static_cast<std::size_t>(spec.width), height = static_cast<std::size_t>(spec.height);
-  if (width * height > kMostPixels) return text("ehas ", width, " x ", height, " pixels; at most 64 million are read");
-  if (width != 2 * height) {
-    return text("ehas ", width, " x ", height, " pixels; a sky is equirectangular, twice as wide as high");
+/// Beside the program, in the build tree as where it is installed; else where the library was installed.
+void* open_module() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  for (const std::filesystem::path& folder : {program.parent_path().parent_path() / CLERESTORY_MODULE_FOLDER,
+                                              std::filesystem::path(CLERESTORY_INSTALLED_MODULE_FOLDER)}) {
+    if (void* module = dlopen((folder / kDecodeImageModule).c_str(), RTLD_NOW)) return module;
   }
-  const int channels = spec.nchannels >= 3 ? 3 : 1;
-  std::vector<float> pixels(width * height * static_cast<std::size_t>(channels));
-  if (!in->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels.data())) return "eis damaged or cut short";
-  std::string answer = "i";
-  const auto put = [&](const void* from, std::size_t bytes) { answer.append(static_cast<const char*>(from), bytes); };
-  put(&width, sizeof width), put(&height, sizeof height);
-  for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(channels))
-    for (std::size_t k = 0; k < 3; ++k) put(&pixels[i + (channels == 3 ? k : 0)], sizeof(float));
+  return nullptr;
+}
+
+/// What DecodeImage hands over, as one string.
+std::string decode(const std::string& file, const std::string& format) {
+  void* module = open_module();
+  void* symbol = module ? dlsym(module, kDecodeImageSymbol) : nullptr;
+  if (!symbol) return text("ecannot be read: ", kDecodeImageModule, " or what it needs is not installed");
+  std::string answer;
+  reinterpret_cast<DecodeImage*>(symbol)(file.c_str(), format.c_str(), &answer,
+                                         [](void* to, const void* bytes, std::size_t n) {
+                                           static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), n);
+                                         });
   return answer;
 }
 
@@ -55,7 +56,9 @@ SkyImage read_sky_image(const std::filesystem::path& file, std::vector<std::stri
   } catch (const ApartFailure& failure) {
     throw InputError(text(name, ": reading it ", failure.what(), "; the file is damaged"));
   }
-  if (answer.empty() || answer[0] != 'i') throw InputError(text(name, ": ", answer.empty() ? "" : answer.substr(1)));
+  if (answer.empty() || answer[0] != 'i') {
+    throw InputError(text(name, ": ", answer.empty() ? "cannot be read" : answer.substr(1)));
+  }
 
   SkyImage image;
   const char* from = answer.data() + 1;

@@ -1,5 +1,6 @@
 // Skies, sun and weather through the whole program.
 
+#include <numbers>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -12,14 +13,14 @@ namespace {
 constexpr const char* kPlane = "o plane\nusemtl ground\nv 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n";
 
 /// Illuminance [lx] at a point over an open plane, under the sky and sun of `members`.
-double open_illuminance(const std::string& members) {
-  const TempFolder folder;
+double open_illuminance(const std::string& members, const TempFolder& folder = {}) {
   folder.write("plane.obj", kPlane);
   const std::string scene = folder.write("s.json", R"({ "geometry": [{ "file": "plane.obj" }],
       "materials": { "ground": { "reflectance": 0.2 } },
       "sensors": [{ "origin": [5, 5, 0.5], "u": [1, 0, 0], "v": [0, 1, 0], "spacing": 10, "normal": [0, 0, 1] }], )" +
                                                        members + " }");
-  const ProgramRun run = run_program({"solve", scene, "-o", folder / "out.vtp", "--sensors-out", folder / "out.csv"});
+  const ProgramRun run = run_program(
+      {"solve", scene, "-o", folder / "out.vtp", "--sensors-out", folder / "out.csv", "--max-element", "10"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   std::istringstream rows(read_text(folder / "out.csv"));
   std::string row;
@@ -46,6 +47,15 @@ TEST(Daylight, PerezGivesAnOpenPlaneTheLightOfSkyAndSun) {
       "time": "2026-06-21T12:00", "sun": { "direction": [0, -0.5, 0.8660254037844386])";
   EXPECT_NEAR(open_illuminance(given + " }"), 88280.99741, 88.3);
   EXPECT_NEAR(open_illuminance(given + R"(, "normal_illuminance": 0 })"), 12062.76344, 12.1);
+}
+
+TEST(Daylight, AnImageGivesAnOpenPlaneItsLuminanceTimesPi) {
+  const TempFolder folder;
+  // 4 x 2 pixels of 250 / 256 * 2^10 = 1000 cd/m2 in Radiance's format, not compressed.
+  std::string image = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+  for (int k = 0; k < 8; ++k) image += "\xfa\xfa\xfa\x8a";
+  folder.write("sky.hdr", image);
+  EXPECT_NEAR(open_illuminance(R"("sky": { "image": "sky.hdr" })", folder), 1000 * std::numbers::pi, 3);
 }
 
 TEST(Daylight, TheOfficeInMarchHasTheLightOfItsHour) {

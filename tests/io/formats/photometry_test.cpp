@@ -1,50 +1,20 @@
 #include "io/formats/photometry.h"
 
 #include <cmath>
-#include <fstream>
-#include <map>
 #include <numbers>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "io/formats/ies.h"
 #include "io/formats/ldt.h"
 #include "solver/model/error.h"
+#include "tests/support/csv_rows.h"
 #include "tests/support/temp_folder.h"
 
 namespace clerestory {
 namespace {
 
 const std::filesystem::path kSamples = std::filesystem::path(CLERESTORY_SOURCE_DIR) / "../shared/data/photometry";
-
-/// Rows of a CSV file by column name.
-std::vector<std::map<std::string, std::string>> read_rows(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  const auto cells = [](const std::string& line) {
-    std::vector<std::string> out(1);
-    bool quoted = false;
-    for (const char c : line) {
-      if (c == '"')
-        quoted = !quoted;
-      else if (c == ',' && !quoted)
-        out.emplace_back();
-      else if (c != '\r')
-        out.back() += c;
-    }
-    return out;
-  };
-  std::vector<std::map<std::string, std::string>> rows;
-  std::string line;
-  std::getline(in, line);
-  const std::vector<std::string> names = cells(line);
-  while (std::getline(in, line)) {
-    const std::vector<std::string> values = cells(line);
-    auto& row = rows.emplace_back();
-    for (std::size_t i = 0; i < names.size() && i < values.size(); ++i) row[names[i]] = values[i];
-  }
-  return rows;
-}
 
 PhotometricWeb read(const std::string& name) {
   std::vector<std::string> warnings;
@@ -79,7 +49,7 @@ const std::string kEvenly = "1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n100 100
 
 TEST(Photometry, EveryGoodSampleHasItsFluxAndPeakAndEveryBrokenOneIsRefusedWithItsLine) {
   if (!std::filesystem::exists(kSamples)) GTEST_SKIP() << "no ../shared/data beside this checkout";
-  for (const auto& row : read_rows(kSamples / "expected.csv")) {
+  for (const auto& row : test::csv_rows(kSamples / "expected.csv")) {
     const std::string& name = row.at("file");
     if (row.at("expect") == "parse") {
       const PhotometricWeb web = read(name);

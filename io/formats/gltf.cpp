@@ -1,12 +1,16 @@
-// glTF 2.0: nodes, meshes, materials, lights (KHR_lights_punctual, KHR_materials_emissive_strength), in double where
-// the file is. Read here and not by Assimp 5.2, which knows no emissive strength and keeps one node a light.
+// glTF 2.0: nodes, meshes, materials, lights (KHR_lights_punctual, EXT_lights_ies, KHR_materials_emissive_strength), in
+// double where the file is. Read here and not by Assimp 5.2, which knows no emissive strength and keeps one node a
+// light.
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <numbers>
 
 #include "io/formats/add_mesh.h"
 #include "io/formats/gltf_file.h"
+#include "io/formats/ies.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
@@ -104,7 +108,8 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& in, st
 
 class GltfReader {
  public:
-  explicit GltfReader(const std::filesystem::path& path) : file_(path), stem_(path.stem().string()) {}
+  explicit GltfReader(const std::filesystem::path& path)
+      : file_(path), folder_(path.parent_path()), stem_(path.stem().string()) {}
 
   Model read() {
     model_.metres_per_unit = 1.0;
@@ -161,6 +166,8 @@ class GltfReader {
       if (node.contains("mesh")) show_mesh(node, whole_number(file_, node, "mesh", 0, where), place, where);
       const Json& light = extension(node, "KHR_lights_punctual");
       if (light.contains("light")) add_light(whole_number(file_, light, "light", 0, where), place, node, where);
+      const Json& profile = extension(node, "EXT_lights_ies");
+      if (profile.contains("light")) add_light_profile(profile, place, node, where);
     }
   }
 
@@ -303,7 +310,52 @@ class GltfReader {
     }
   }
 
+  /// EXT_lights_ies: V = H = 0 of the file along -z of the node, its photometric plane H = 0 through x. The profile's
+  /// opening counts as in a scene file; the extension speaks of points.
+  void add_light_profile(const Json& instance, const Affine& place, const Json& node, const std::string& where) {
+    const std::string of_light = where + ".extensions.EXT_lights_ies";
+    const auto web = light_profile(whole_number(file_, instance, "light", 0, of_light), of_light);
+    const double multiplier = finite_number(file_, instance, "multiplier", 1, of_light);
+    const Spectrum colour = to_spectrum(finite_numbers(file_, instance, "color", {1, 1, 1}, of_light));
+    check_range(file_, colour * (multiplier * peak_candela(*web)), kBrightest, of_light + ": color x multiplier");
+    if (!is_finite(place.b) ||
+        std::max({std::abs(place.b.x), std::abs(place.b.y), std::abs(place.b.z)}) > kLargestCoordinate) {
+      file_.refuse(where + ": its light stands outside [-1e12, 1e12]");
+    }
+    const Vec3 back = normalized(place.direction({0, 0, 1})), side = place.direction({1, 0, 0});
+    const Vec3 x = normalized(side - back * dot(side, back));
+    if (!(length(back) > 0 && length(x) > 0)) file_.refuse(where + ": its light has no direction");
+    WebLuminaire lamp{text_member(file_, node, "name", where), web, place.b, {x, cross(back, x), back}, {}, {}};
+    if (web->type == WebType::A) lamp.axes = {-back, lamp.axes.y, x};  // the beam is x then, and V goes up to z
+    lamp.scale = colour * (multiplier / kWhiteEfficacy);
+    model_.lights.webs.push_back(std::move(lamp));
+  }
+
+  std::shared_ptr<const PhotometricWeb> light_profile(std::size_t index, const std::string& where) {
+    auto& web = profiles_[index];
+    if (web) return web;
+    const Json& all = extension(file_.root(), "EXT_lights_ies");
+    const auto list = all.find("lights");
+    if (list == all.end() || !list->is_array() || index >= list->size() || !(*list)[index].is_object())
+      file_.refuse(text(where, " uses light ", index, ", which is not there"));
+    const Json& light = (*list)[index];
+    const std::string of_light = text("EXT_lights_ies.lights[", index, "]");
+    const std::string uri = text_member(file_, light, "uri", of_light);
+    if (uri.empty() && !light.contains("bufferView")) file_.refuse(of_light + " has neither a uri nor a bufferView");
+    const std::string bytes = uri.empty()
+                                  ? std::string(file_.view_bytes(whole_number(file_, light, "bufferView", 0, of_light)))
+                                  : file_.uri_bytes(uri, of_light);
+    try {
+      web = std::make_shared<const PhotometricWeb>(parse_ies(bytes, of_light, folder_, model_.warnings));
+    } catch (const InputError& error) {
+      file_.refuse(error.what());
+    }
+    return web;
+  }
+
   GltfFile file_;
+  std::filesystem::path folder_;
+  std::map<std::size_t, std::shared_ptr<const PhotometricWeb>> profiles_;
   std::string stem_;
   Model model_;
   UniqueNames names_;

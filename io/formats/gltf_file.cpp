@@ -163,6 +163,24 @@ const Json& GltfFile::element(const char* key, std::size_t index) const {
   return all[index];
 }
 
+std::string GltfFile::uri_bytes(const std::string& uri, const std::string& where) const {
+  std::string bytes;
+  if (uri.starts_with("data:")) {
+    const std::size_t comma = uri.find(";base64,");
+    if (comma == uri.npos || !decode_base64(std::string_view(uri).substr(comma + 8), bytes)) {
+      refuse(where + ": its data URI is not base64");
+    }
+    return bytes;
+  }
+  if (uri.find("://") != uri.npos)
+    refuse(text(where, " '", quotable(uri), "' is on the net; only files beside the model are read"));
+  try {
+    return read_input_file(file_.parent_path() / percent_decoded(uri), kMaxBytes);
+  } catch (const InputError& error) {
+    refuse(text(where, ": ", error.what()));
+  }
+}
+
 std::string GltfFile::buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk) const {
   const std::string where = text("buffers[", index, "]");
   if (!buffer.is_object()) refuse(where + " must be an object");
@@ -172,19 +190,8 @@ std::string GltfFile::buffer_bytes(const Json& buffer, std::size_t index, std::s
   if (uri.empty()) {
     if (index != 0 || binary_chunk.empty()) refuse(where + " has neither a uri nor a binary chunk");
     bytes = binary_chunk;
-  } else if (uri.starts_with("data:")) {
-    const std::size_t comma = uri.find(";base64,");
-    if (comma == uri.npos || !decode_base64(std::string_view(uri).substr(comma + 8), bytes)) {
-      refuse(where + ": its data URI is not base64");
-    }
-  } else if (uri.find("://") != uri.npos) {
-    refuse(text(where, " '", quotable(uri), "' is on the net; only files beside the model are read"));
   } else {
-    try {
-      bytes = read_input_file(file_.parent_path() / percent_decoded(uri), kMaxBytes);
-    } catch (const InputError& error) {
-      refuse(text(where, ": ", error.what()));
-    }
+    bytes = uri_bytes(uri, where);
   }
   if (bytes.size() < length) refuse(text(where, " has ", bytes.size(), " of ", length, " bytes; the file is cut off"));
   return bytes;

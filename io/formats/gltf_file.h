@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -32,6 +33,9 @@ class GltfFile {
 
   std::vector<Vec3> positions(std::size_t accessor) const;
   std::vector<std::uint32_t> indices(std::size_t accessor) const;
+  /// What a uri stands for: a data URI, or a file beside the model.
+  std::string uri_bytes(const std::string& uri, const std::string& where) const;
+  std::string_view view_bytes(std::size_t buffer_view) const { return view(buffer_view).bytes; }
 
   [[noreturn]] void refuse(const std::string& what) const;
 

@@ -137,6 +137,38 @@ TEST_F(Gltf, LightsStandWhereTheirNodesAreAndOneLightMayStandTwice) {
   EXPECT_DOUBLE_EQ(scene.lights.suns[0].normal_irradiance[0], 10);
 }
 
+TEST_F(Gltf, LightProfilesShineAlongTheirNodes) {
+  // 100 cd straight ahead, nothing at a right angle; to H = 0 more than to H = 180.
+  folder_.write("lamp.ies",
+                "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 9\n0 45 90\n0 90 180\n"
+                "100 90 0\n100 50 0\n100 10 0\n");
+  const std::string lights = R"("materials": [ { "name": "paint" } ], "extensions": { "EXT_lights_ies": { "lights": [
+      { "uri": "lamp.ies" }, { "uri": "no.ies" }, {} ] } })";
+  const auto node = [](const std::string& members) {
+    return R"({ "mesh": 0, "children": [1] }, { "name": "lamp", "translation": [1, 2, 3], "rotation":
+      [-0.7071067811865476, 0, 0, 0.7071067811865476], "extensions": { "EXT_lights_ies": { )" +
+           members + " } } }";
+  };
+  const Scene scene = read(gltf(node(R"("light": 0, "multiplier": 2, "color": [1, 0.5, 0])"), lights));
+  ASSERT_EQ(scene.lights.webs.size(), 1u);
+  const WebLuminaire& lamp = scene.lights.webs[0];
+  EXPECT_EQ(lamp.name, "lamp");
+  EXPECT_LT(length(lamp.position - Vec3{1, -3, 2}), 1e-12);
+  // The node's -z points down, its x stays.
+  EXPECT_LT(length(lamp.axes.z - Vec3{0, 0, 1}), 1e-12);
+  EXPECT_LT(length(lamp.axes.x - Vec3{1, 0, 0}), 1e-12);
+  EXPECT_LT(length(lamp.axes.y - Vec3{0, 1, 0}), 1e-12);
+  EXPECT_DOUBLE_EQ(lamp.scale[0], 2 / 179.0);
+  EXPECT_DOUBLE_EQ(lamp.scale[1], 1 / 179.0);
+  EXPECT_NEAR(candela_towards(*lamp.web, normalized({1, 0, -1})), 90, 1e-5);
+  EXPECT_NE(refused(gltf(node(R"("light": 1)"), lights)).find("EXT_lights_ies.lights[1]: "), std::string::npos);
+  EXPECT_NE(refused(gltf(node(R"("light": 2)"), lights)).find("has neither a uri nor a bufferView"), std::string::npos);
+  EXPECT_NE(refused(gltf(node(R"("light": 3)"), lights)).find("uses light 3, which is not there"), std::string::npos);
+  folder_.write("lamp.ies", "TILT=NONE\n1 -1 1 3 x\n");
+  EXPECT_EQ(refused(gltf(node(R"("light": 0)"), lights)),
+            "a.gltf: EXT_lights_ies.lights[0]:2: 'x' is not a number; expected the number of horizontal angles");
+}
+
 TEST_F(Gltf, LightBeyondWhatAResultCanHoldIsRefused) {
   EXPECT_EQ(refused(gltf(R"({ "mesh": 0 })", R"("materials": [ { "name": "lamp", "emissiveFactor": [1, 1, 1],
       "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1e300 } } } ])")),

@@ -9,7 +9,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kMostPixels = 64u << 20;
+constexpr std::size_t kMostPixels = 32u << 20;
 
 std::string dimensions(std::size_t width, std::size_t height) {
   return "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels; ";
@@ -24,7 +24,7 @@ std::string decode(const std::string& file, const std::string& format, std::size
   if (!in || !in->open(file, spec)) return "is damaged or no " + format + " image";
   if (spec.width <= 0 || spec.height <= 0 || spec.depth != 1 || spec.nchannels < 1) return "has no pixels";
   width = static_cast<std::size_t>(spec.width), height = static_cast<std::size_t>(spec.height);
-  if (width * height > kMostPixels) return dimensions(width, height) + "at most 64 million are read";
+  if (width * height > kMostPixels) return dimensions(width, height) + "at most 8192 x 4096 are read";
   if (width != 2 * height) return dimensions(width, height) + "a sky is equirectangular, twice as wide as high";
   const int channels = spec.nchannels >= 3 ? 3 : 1;
   pixels.resize(3 * width * height);

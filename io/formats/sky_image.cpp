@@ -51,7 +51,7 @@ SkyImage read_sky_image(const std::filesystem::path& file, std::vector<std::stri
     throw InputError(text(name, ": '", quotable(extension), "' is not read as a sky; known are .hdr and .exr"));
   std::string answer;
   try {
-    const ApartLimits limits{.time = std::chrono::seconds(60), .memory_bytes = std::uint64_t{6} << 30};
+    const ApartLimits limits{.time = std::chrono::seconds(60), .memory_bytes = std::uint64_t{4} << 30};
     answer = run_apart([&] { return decode(file.string(), extension == ".hdr" ? "hdr" : "openexr"); }, limits);
   } catch (const ApartFailure& failure) {
     throw InputError(text(name, ": reading it ", failure.what(), "; the file is damaged"));

@@ -115,7 +115,8 @@ SkyShape perez_shape(const SkyMeasurement& measured) {
     const Coefficients& x = table[parameter];
     return x[0] + x[1] * Z + Delta * (x[2] + x[3] * Z);
   };
-  SkyShape shape{value(0), std::min(value(1), 0.0), 1, value(2), value(3), value(4)};
+  // At the rim of their range the coefficients let b rise to 0 and above: an endless horizon, or no light at all.
+  SkyShape shape{value(0), std::min(value(1), -0.01), 1, value(2), value(3), value(4)};
   if (sky.bin == 0) {
     const Coefficients &c = table[2], &d = table[3];
     shape.c = std::exp(std::pow(Delta * (c[0] + c[1] * Z), c[2])) - c[3];

@@ -9,7 +9,7 @@ namespace clerestory {
 
 /// Relative luminance at zenith angle Z, at the angle chi from the sun:
 ///   L ~ phi(Z) f(chi),   phi(Z) = 1 + a exp(b / cos Z),   f(chi) = k + c exp(d chi) + e cos^2 chi
-/// b <= 0, so that the horizon stays finite: phi = 1 there (1 + a for b = 0).
+/// b < 0, so that the horizon stays finite: phi = 1 there.
 /// Source: ISO 15469:2004 (k = 1 - c exp(d pi/2)); Perez, Seals & Michalsky 1993 (k = 1).
 struct SkyShape {
   double a = 0, b = -1;                ///< gradation from zenith to horizon

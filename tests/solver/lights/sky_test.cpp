@@ -205,6 +205,17 @@ TEST(SkyRadiance, OfAShapeGivesItsHorizontalIrradianceWhereverTheSunStands) {
   }
 }
 
+TEST(SkyRadiance, OfPerezIsFiniteAndHasLightForAnyMeasurement) {
+  for (const double Z : {0.0, 0.1, 0.4, 0.8, 1.2, 1.4, 1.55, 1.6, 2.0})
+    for (const double direct : {0.0, 1.0, 10.0, 50.0, 100.0, 200.0, 300.0, 500.0, 700.0, 900.0, 1367.0, 10000.0})
+      for (const double diffuse : {0.0, 0.5, 5.0, 20.0, 60.0, 120.0, 250.0, 500.0, 10000.0}) {
+        const SkyMeasurement m{direct, diffuse, Z, 100, 2};
+        const double integral = horizontal_integral(perez_shape(m), kPi / 2 - Z);
+        EXPECT_TRUE(integral > 1e-4 && integral < 1e4) << Z << ", " << direct << ", " << diffuse << ": " << integral;
+        EXPECT_TRUE(std::isfinite(diffuse_efficacy(m)) && std::isfinite(direct_efficacy(m)));
+      }
+}
+
 /// Largest relative error of the table at random directions and close to the sun.
 double table_error(const SkyShape& shape, const Vec3& sun) {
   const SkyShapeTable table(shape, sun);

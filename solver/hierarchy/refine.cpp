@@ -18,7 +18,7 @@ constexpr std::uint64_t kProbe = 0xa1;
 constexpr std::size_t kParts = 4;
 constexpr int kDirections = 16, kPairs = 16, kPoints = 8;
 constexpr int kMostHalvings = 4;  // of an element in one call
-constexpr double kSigmas = 3, kFewestPatches = 2000, kDark = 0.25;
+constexpr double kSigmas = 3, kFewestPatches = 2000, kMostPatches = 10'000, kDark = 0.25;
 
 /// Values of the same sample in each part, summed so that differences of parts and their errors follow.
 struct Paired {
@@ -166,7 +166,7 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
                    const RefineOptions& options, unsigned long long& rays, const Monitor& monitor) {
   const PatchSet& patches = mesh.patches();
   const double total = patches.total_area();
-  const double A0 = total / std::max(kFewestPatches, static_cast<double>(patches.patch_count()));
+  const double A0 = total / std::clamp(static_cast<double>(patches.patch_count()), kFewestPatches, kMostPatches);
   const double dark = kDark * area_median(light.problem.patches, E);
   std::vector<std::uint32_t> candidates = mesh.leaves(), marked;
   std::size_t halved = 0;
@@ -180,8 +180,8 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
         const double edge = mesh.edge_length(e, mesh[e].edge);
         const auto corners = mesh.corner_positions(e);
         const double weight = luminous_mean(patches.rho[p]) * triangle_area(corners) / A0;
-        // Nothing varies by more than four times its mean between four parts.
-        if (edge < 2 * options.shortest_edge || 4 * weight < options.tolerance / 2) continue;
+        // Little varies by more than twice its mean between four parts.
+        if (edge < 2 * options.shortest_edge || 2 * weight < options.tolerance / 2) continue;
         const Variation v =
             irradiance_variation(light, B, corners, patches.normal[p], stream_key(options.seed, kProbe, e), spent[k]);
         if (v.difference > options.tolerance * v.E &&

@@ -31,7 +31,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
 
 /// Halves elements, and the halves again up to four times, while light varies inside of them by more than
 ///   difference > tolerance E   and   rho (A / A0) difference > tolerance / 2 * max(E, a quarter of the median E).
-/// A0 is the size of a patch if all were alike, of at least 2,000: what a small or a dark element gets wrong is little
+/// A0 is the size of a patch if all were alike, of 2,000 to 10,000: what a small or a dark element gets wrong is little
 /// of the light that goes on from it. Each looks with its own rays at the light as it was found on the leaves before.
 ///
 /// returns  elements halved for their own sake; neighbours that conformity asks for are not counted.

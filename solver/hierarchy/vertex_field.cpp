@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "solver/gather_point.h"
 #include "solver/model/parallel.h"
@@ -14,23 +15,41 @@ namespace {
 constexpr double kDark = 0.02;
 constexpr int kMostRounds = 40;
 
-/// Gathers at points [begin, all), in parallel.
+/// The points of the mesh that are worth a gather: all, or so many, those of the largest elements.
+std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
+  const std::size_t points = mesh.points().position.size();
+  if (points <= most) return std::vector<bool>(points, true);
+  std::vector<float> largest(points, 0);
+  for (const std::uint32_t leaf : mesh.leaves())
+    for (const std::uint32_t p : mesh[leaf].point)
+      largest[p] = std::max(largest[p],
+                            static_cast<float>(std::ldexp(mesh.patches().area[mesh[leaf].patch], -mesh[leaf].level)));
+  std::vector<float> sorted = largest;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(most), sorted.end(), std::greater<>());
+  std::vector<bool> worth(points);
+  for (std::size_t p = 0; p < points; ++p) worth[p] = largest[p] > sorted[most];
+  return worth;
+}
+
+/// Gathers at points that are new since the last time, in parallel.
 class Gatherer {
  public:
   Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options)
       : light_(problem, B),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
-        pilots_(wants_pilot(light_, pattern_)) {}
+        pilots_(wants_pilot(light_, pattern_)),
+        worth_(worth_a_gather(mesh, options.most_points)) {}
 
-  /// False when the monitor stopped it; field.reached then tells how far it came.
+  /// False when the monitor stopped it.
   bool gather(VertexField& field, const Monitor& monitor) {
     const VertexLightmap& at = mesh_.points();
-    const std::size_t begin = field.reached, end = at.position.size();
+    const std::size_t begin = field.known.size(), end = at.position.size();
     const int channels = light_.problem.patches.channels;
     field.E.value.resize(end * static_cast<std::size_t>(channels));
     field.small_lights.value.resize(field.E.value.size());
     field.noise.resize(end);
+    field.known.resize(end);
     if (pilots_) {
       const std::size_t own = pilot_of_.empty() ? end : pilot_of_.size();
       for (std::size_t p = pilot_of_.size(); p < end; ++p)
@@ -44,15 +63,17 @@ class Gatherer {
       monitor.report("vertices", static_cast<double>(first) / static_cast<double>(end));
       const std::size_t last = std::min(first + kBlock, end);
       parallel_for(last - first, 16, [&](std::size_t from, std::size_t to) {
-        for (std::size_t p = first + from; p < first + to; ++p) gather_at(p, field, rays[p - begin]);
+        for (std::size_t p = first + from; p < first + to; ++p)
+          if (is_worth_it(p)) gather_at(p, field, rays[p - begin]);
       });
-      field.reached = last;
+      for (std::size_t p = first; p < last; ++p) field.known[p] = is_worth_it(p);
     }
     for (const auto r : rays) field.rays += r;
     return true;
   }
 
  private:
+  bool is_worth_it(std::size_t p) const { return p >= worth_.size() || worth_[p]; }
   void gather_at(std::size_t p, VertexField& field, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();
     PointLight mean;
@@ -79,6 +100,7 @@ class Gatherer {
   const GatherPattern pattern_;
   const ElementMesh& mesh_;
   bool pilots_;
+  std::vector<bool> worth_;              ///< by point of the mesh as it was at first
   std::vector<std::uint32_t> pilot_of_;  ///< by point: the one that sent a pilot for it
   std::vector<RayShares> shares_;        ///< by point that sent a pilot
 };
@@ -116,29 +138,21 @@ struct Candidate {
   std::uint32_t leaf;
 };
 
+/// Leaves of which all corners are known.
+std::vector<std::uint32_t> known_leaves(const ElementMesh& mesh, const std::vector<bool>& known) {
+  std::vector<std::uint32_t> leaves = mesh.leaves();
+  std::erase_if(leaves, [&](std::uint32_t leaf) {
+    const auto& point = mesh[leaf].point;
+    return !known[point[0]] || !known[point[1]] || !known[point[2]];
+  });
+  return leaves;
+}
+
 /// Leaves that interpolate worse than the tolerance, the worst first.
 std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options) {
-  const std::vector<std::uint32_t> leaves = mesh.leaves();
-  std::vector<double> E(field.E.size());
-  for (std::size_t p = 0; p < E.size(); ++p) E[p] = luminous_mean(field.E[p]);
-  double flux = 0, area = 0;
-  for (const std::uint32_t leaf : leaves) {
-    const auto& e = mesh[leaf];
-    const double a = std::ldexp(mesh.patches().area[e.patch], -e.level);
-    flux += a * (E[e.point[0]] + E[e.point[1]] + E[e.point[2]]) / 3;
-    area += a;
-  }
-  const double dark = area > 0 ? kDark * flux / area : 0;
-  const std::vector<Vec3> gradient = gradients(mesh, leaves, E);
   std::vector<Candidate> worst;
-  for (const std::uint32_t leaf : leaves) {
-    const auto& e = mesh[leaf];
-    if (!(mesh.edge_length(leaf, e.edge) > options.shortest_edge)) continue;
-    const auto x = mesh.corner_positions(leaf);
-    double off = 0;
-    for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, e.point, gradient, k)));
-    const double level = std::max((E[e.point[0]] + E[e.point[1]] + E[e.point[2]]) / 3, dark);
-    const double noise = (field.noise[e.point[0]] + field.noise[e.point[1]] + field.noise[e.point[2]]) / 3;
+  for (const auto& [leaf, off, level, noise] : leaf_errors(mesh, field)) {
+    if (!(mesh.edge_length(leaf, mesh[leaf].edge) > options.shortest_edge)) continue;
     if (off > std::max(options.tolerance * level, noise)) worst.push_back({off / level, leaf});
   }
   std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
@@ -148,6 +162,33 @@ std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& fi
 }
 
 }  // namespace
+
+std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& field) {
+  const std::vector<std::uint32_t> leaves = known_leaves(mesh, field.known);
+  std::vector<double> E(field.E.size());
+  for (std::size_t p = 0; p < E.size(); ++p) E[p] = luminous_mean(field.E[p]);
+  const auto mean = [](const std::array<std::uint32_t, 3>& point, const std::vector<double>& of) {
+    return (of[point[0]] + of[point[1]] + of[point[2]]) / 3;
+  };
+  double flux = 0, area = 0;
+  for (const std::uint32_t leaf : leaves) {
+    const auto& e = mesh[leaf];
+    const double a = std::ldexp(mesh.patches().area[e.patch], -e.level);
+    flux += a * mean(e.point, E);
+    area += a;
+  }
+  const double dark = area > 0 ? kDark * flux / area : 0;
+  const std::vector<Vec3> gradient = gradients(mesh, leaves, E);
+  std::vector<LeafError> errors;
+  for (const std::uint32_t leaf : leaves) {
+    const auto& point = mesh[leaf].point;
+    const auto x = mesh.corner_positions(leaf);
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, gradient, k)));
+    errors.push_back({leaf, off, std::max(mean(point, E), dark), mean(point, field.noise)});
+  }
+  return errors;
+}
 
 VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
                          const Monitor& monitor) {

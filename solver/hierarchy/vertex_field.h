@@ -11,7 +11,9 @@ namespace clerestory {
 struct FieldOptions {
   double tolerance = 0.025;  ///< an element is halved where interpolation may err by more, of the irradiance there [1]
   double shortest_edge = 0;  ///< no edge up to this length is halved [m]
-  std::size_t most_points = 1'000'000;  ///< no halving beyond
+  /// Points that are gathered. Where the lightmap alone has more, those of the smallest elements are left to the
+  /// caller, who knows what their element receives; else no element is halved beyond.
+  std::size_t most_points = 1'000'000;
   GatherQuality quality{};
   std::uint64_t seed = 1;
 };
@@ -22,8 +24,8 @@ struct VertexField {
   Field small_lights;         ///< part of E: from luminaires without extent and suns
   std::vector<double> noise;  ///< P, standard error of E, luminous mean
   unsigned long long rays = 0;
-  bool complete = true;  ///< false: the monitor stopped it, and points from `reached` on hold nothing
-  std::size_t reached = 0;
+  std::vector<bool> known;  ///< P, false: not gathered, E holds nothing
+  bool complete = true;     ///< false: the monitor stopped it
 };
 
 /// Final gather at all points of the mesh, then halves elements, gathers the new points, and looks again.
@@ -38,6 +40,16 @@ struct VertexField {
 /// engineering analysis", 1987.
 VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
                          const Monitor& monitor = {});
+
+/// How a leaf interpolates between its vertices, luminous means [W/m2].
+struct LeafError {
+  std::uint32_t leaf;  ///< element of the mesh
+  double off;          ///< how far the middle of an edge may lie off the straight line
+  double level;        ///< irradiance there; at least the darkest that counts
+  double noise;        ///< standard error at the vertices
+};
+/// Of each leaf whose vertices were gathered.
+std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& field);
 
 /// Mean irradiance of each leaf from the field at its corners, with what the turning of the gradient says about how far
 /// the middle lies off them: exact for quadratic light, where the mean of the corners loses what light bulges [W/m2].

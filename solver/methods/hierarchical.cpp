@@ -10,6 +10,7 @@
 #include "solver/hierarchy/balance.h"
 #include "solver/hierarchy/bf_refine.h"
 #include "solver/hierarchy/build_tree.h"
+#include "solver/hierarchy/debug_view.h"
 #include "solver/hierarchy/refine.h"
 #include "solver/hierarchy/trace_links.h"
 #include "solver/lights/direct.h"
@@ -19,13 +20,17 @@
 namespace clerestory {
 namespace {
 
-constexpr int kMostRounds = 4;              // of coarse solves before the last one
-constexpr double kWorthAnother = 1.3;       // growth of the leaves that makes a coarse solve on them worth its rays
+constexpr int kMostRounds = 4;         // of coarse solves before the last one
+constexpr double kWorthAnother = 1.3;  // growth of the leaves that makes a coarse solve on them worth its rays
+constexpr double kWorthAnotherMerged = 1.01;
 constexpr double kReceivers = 200'000;      // faces finer than this share of the area receive in clusters
 constexpr double kStakeByTolerance = 1e-4;  // flux at stake of `bf`, as a share of tolerance times all emitted flux
 /// Below this much memory of links [bytes] every hit keeps a link of its own: nodes hide what is darker or brighter in
 /// them than was known when the links were made, and a room lit by a spot on its ceiling loses 1 % by that.
 constexpr double kLinksToSpare = 256e6;
+/// Rays of all bundles, and of all pairs, in one round: half a minute of a core. Beyond, receivers get fewer, as a
+/// wrong one among so many does little harm.
+constexpr double kMostRays = 3e7;
 constexpr double kGroundLevel = 0.1;  // share of a space's area that is no brighter than its ground level
 
 /// Quality of one round: thresholds fall from round to round.
@@ -143,6 +148,9 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   const ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
+  const double receivers = std::min(static_cast<double>(n), kReceivers);
+  for (int* rays : {&quality.links.bundle_rays, &quality.links.lamp_rays})
+    while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
   Transport transport;
@@ -181,6 +189,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   s.clusters = tree.clusters;
   s.links = transport.link_count();
   s.log = {round_line(name, s, n, transport.receiver_count())};
+  if (options.debug) view_round(light, tree, transport, quality.links, s, *options.debug);
   round.space = std::move(transport.space);
   round.spaces = transport.spaces;
   round.complete = true;
@@ -247,8 +256,8 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
                                       last->result.solution.B, how, rays, monitor);
     log.push_back(name + ": " + std::to_string(halved) + " halved, " + std::to_string(mesh.leaf_count()) + " elements");
     // Halves know no more of the light than the element they came from did: nodes must not take them for alike.
-    const bool known = mesh.leaf_count() == before || !merges(mesh.leaf_count(), full(options).links);
-    if (known && static_cast<double>(mesh.leaf_count()) < kWorthAnother * static_cast<double>(before)) break;
+    const double worth_another = merges(mesh.leaf_count(), full(options).links) ? kWorthAnotherMerged : kWorthAnother;
+    if (static_cast<double>(mesh.leaf_count()) < worth_another * static_cast<double>(before)) break;
   }
   if (going) going = go_on(solve_round(problem, mesh, options, full(options), "last round", last.get(), monitor));
 

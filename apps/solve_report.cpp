@@ -20,9 +20,11 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   if (s.patches.channels == 1) out.push_back("colour: everything is grey, one channel is solved");
   if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
   if (scene.lights.lamp_count() == 0) out.push_back("luminaires: the scene has none");
-  const auto& m = s.patches.materials;
-  if (std::none_of(m.begin(), m.end(), [](const Material& x) { return x.kind == MaterialKind::glass; }))
-    out.push_back("glass: the scene has none");
+  const auto none_is = [&](MaterialKind kind) {
+    return std::ranges::none_of(s.patches.materials, [&](const Material& m) { return m.kind == kind; });
+  };
+  if (none_is(MaterialKind::glass)) out.push_back("glass: the scene has none");
+  if (none_is(MaterialKind::diffuser)) out.push_back("diffusers: the scene has none");
   if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
   if (s.lit_sides.lamp_interiors)
     out.push_back(counted(s.lit_sides.lamp_interiors, "emitting side") + " that shine on nothing but their own lamp");

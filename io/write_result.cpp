@@ -76,11 +76,30 @@ void add_light(vtkFieldData* to, const Field& E, const Field& B, std::optional<d
                [&](std::size_t i) { return 100 * photometric(E[i]) / *daylight_reference; });
 }
 
+/// Irradiance behind a diffuser's patch p at x, linear between the points of the patch that lies there.
+Spectrum irradiance_behind(const PatchSet& patches, const VertexLightmap& lightmap, std::size_t p, const Vec3& x) {
+  Spectrum E(0.0);
+  double best = -1e300;
+  for (const PatchSet::Behind& other : patches.patches_behind(p)) {
+    const auto c = patches.corner_positions(other.patch);
+    const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
+    const double v = dot(cross(c[2] - x, c[0] - x), n) / dot(n, n), w = dot(cross(c[0] - x, c[1] - x), n) / dot(n, n);
+    const double inside = std::min({1 - v - w, v, w});
+    if (!(inside > best)) continue;
+    best = inside;
+    const auto& point = lightmap.corners[other.patch];
+    E = lightmap.E[point[0]] * (1 - v - w) + lightmap.E[point[1]] * v + lightmap.E[point[2]] * w;
+  }
+  return E;
+}
+
 Field radiosity_at_points(const PatchSet& patches, const VertexLightmap& lightmap) {
   Field B(lightmap.position.size(), lightmap.E.channels);
   for (std::size_t i = 0; i < B.size(); ++i) {
     const std::size_t p = lightmap.patch_of_point[i];
     B.set(i, patches.M[p] + patches.rho[p] * lightmap.E[i]);
+    if (!patches.patches_behind(p).empty())
+      B.add(i, patches.tau[p] * irradiance_behind(patches, lightmap, p, lightmap.position[i]));
   }
   return B;
 }

@@ -14,9 +14,9 @@ namespace clerestory {
 /// Knows the faces of one plane group by place.
 ///
 /// Where faces cover each other, each side of the plane shows one of them, taken in this order:
-///   glass that wins by size owns both sides; else a face that acts on this side (its front, or two-sided) before one
-///   whose black back is there; a front before a back; the material that covers less of the plane, a source counting
-///   half, before one that covers more. So a pane or a door is cut out of its wall on both sides, a wall stored twice
+///   glass or a diffuser that wins by size owns both sides; else a face that acts on this side (its front, or
+///   two-sided) before one whose black back is there; a front before a back; the material that covers less of the
+///   plane, a source counting half, before one that covers more. So a pane or a door is cut out of its wall on both sides, a wall stored twice
 ///   with opposite normals shows either front, and the order of the file does not matter.
 class Covering {
  public:

@@ -42,6 +42,8 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
   for (std::size_t i = 0; i < n; ++i)
     for (const PatchId q : neighbours[i])
       if (q.valid()) spaces.join(i, q);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const PatchSet::Behind& other : patches.patches_behind(i)) spaces.join(i, other.patch);
   closure.space.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t root = spaces.find(i);

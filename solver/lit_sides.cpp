@@ -183,6 +183,8 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   const int ray_count = 16 * static_cast<int>(std::clamp<std::size_t>((1 << 15) / std::max<std::size_t>(n, 1), 1, 16));
 
   Spaces spaces(patches);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const PatchSet::Behind& other : patches.patches_behind(i)) spaces.see_each_other(patches, i, other.patch);
   light_by_lamps(problem, seed, spaces);
 
   // Emitters first: most patches of a large scene are then met by a ray before it is their turn, and send none, or meet

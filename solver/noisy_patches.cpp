@@ -74,9 +74,11 @@ std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, dou
       }
     });
   }
+  solution.E = std::move(E);
+  const auto new_radiosity = [&](std::size_t i) { solution.B.set(i, patches.M[i] + patches.scattered(solution.E, i)); };
   for (const std::uint32_t i : noisy) {
-    solution.E.set(i, E[i]);
-    solution.B.set(i, patches.M[i] + patches.rho[i] * E[i]);
+    new_radiosity(i);
+    for (const PatchSet::Behind& other : patches.patches_behind(i)) new_radiosity(other.patch);
   }
   for (const auto r : rays) solution.rays += r;
   return noisy.size();

@@ -151,7 +151,7 @@ ShownSolution solve_hierarchical(const Problem& problem, const VertexLightmap& m
   shown.lightmap.E = std::move(field.E);
   solution.B = Field(shown.elements.patch_count(), shown.elements.channels);
   for (std::size_t i = 0; i < shown.elements.patch_count(); ++i)
-    solution.B.set(i, shown.elements.M[i] + shown.elements.rho[i] * solution.E[i]);
+    solution.B.set(i, shown.elements.M[i] + shown.elements.scattered(solution.E, i));
   return shown;
 }
 

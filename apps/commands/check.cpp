@@ -26,8 +26,8 @@ std::string colour(const Spectrum& s) {
 }
 
 std::string describe(const Material& m) {
-  std::string text = m.kind == MaterialKind::glass ? "glass, transmittance " + colour(m.transmittance)
-                                                   : "reflectance " + colour(m.reflectance);
+  std::string text = m.kind == MaterialKind::glass ? "glass" : "reflectance " + colour(m.reflectance);
+  if (m.passes_light()) text += ", transmittance " + colour(m.transmittance);
   if (m.total_power)
     text += ", emits " + colour(*m.total_power) + " W in all";
   else if (m.emits())

@@ -53,10 +53,10 @@ void read_emission(const JsonObject& object, Material& material, ChannelCount& c
 Material read_material(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
   constexpr std::string_view kTypes[] = {"diffuse", "glass", "diffuser", "mirror"};
   const std::string type = object.choice("type", kTypes).value_or("diffuse");
-  if (type == "diffuser" || type == "mirror") {
-    throw InputError(text(object.place("type"), " '", type, "' is not available in this version; use ",
-                          type == "mirror" ? "a diffuse material with the mirror's reflectance"
-                                           : "\"type\": \"glass\" with its transmittance"));
+  if (type == "mirror") {
+    throw InputError(
+        text(object.place("type"),
+             " 'mirror' is not available in this version; use a diffuse material with the mirror's reflectance"));
   }
   Material material;
   material.reflectance = Spectrum(0.5);
@@ -89,8 +89,21 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
     }
     material.kind = MaterialKind::glass;
     material.transmittance = transmittance->value;
+  } else if (type == "diffuser") {
+    if (!transmittance) {
+      throw InputError(text(object.place("transmittance"),
+                            " is missing; a diffuser needs it, and its reflectance: 0.3 and 0.5 for a white blind"));
+    }
+    if (material.sides == 1)
+      throw InputError(text(object.place("sides"), " = 1: a diffuser acts on both of its sides"));
+    material.kind = MaterialKind::diffuser;
+    material.transmittance = transmittance->value;
+    if (const double sum = (material.reflectance + material.transmittance).max(); !(sum < 1)) {
+      throw InputError(text(object.where(), ": reflectance + transmittance = ", sum,
+                            " is outside [0, 1); a sheet cannot give back and pass more than it receives"));
+    }
   } else if (transmittance) {
-    throw InputError(text(object.place("transmittance"), " needs \"type\": \"glass\""));
+    throw InputError(text(object.place("transmittance"), " needs \"type\": \"glass\" or \"diffuser\""));
   }
   return material;
 }

@@ -16,16 +16,19 @@ class System {
   System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& E_direct,
          Field first_guess)
       : B(std::move(first_guess)), p_(patches), tree_(tree), transport_(transport), n_(patches.patch_count()) {
-    source_ = FB = r_ = F_rho_ = Field(n_, p_.channels);
+    source_ = FB = r_ = albedo_ = F_albedo_ = lost_ = Field(n_, p_.channels);
     for (std::size_t i = 0; i < n_; ++i) {
-      source_.set(i, p_.M[i] + p_.rho[i] * E_direct[i]);
+      source_.set(i, p_.M[i] + p_.scattered(E_direct, i));
+      albedo_.set(i, p_.albedo(i));
       scale_ += p_.area[i] * (p_.M[i] + E_direct[i]);
     }
     if (B.size() != n_ || B.channels != p_.channels) B = source_;
-    gather(p_.rho, F_rho_);
+    gather(albedo_, F_albedo_);
     ambient_loss_.resize(transport.spaces);
-    for (std::size_t i = 0; i < n_; ++i)
-      ambient_loss_[transport.space[i]] += p_.area[i] * p_.rho[i] * (Spectrum(1.0) - F_rho_[i]);
+    for (std::size_t i = 0; i < n_; ++i) {
+      lost_.set(i, albedo_[i] - p_.scattered(F_albedo_, i));
+      ambient_loss_[transport.space[i]] += p_.area[i] * lost_[i];
+    }
     update();
   }
 
@@ -54,16 +57,16 @@ class System {
     gather(B, FB);
     std::vector<Spectrum> e(transport_.spaces);
     for (std::size_t i = 0; i < n_; ++i) {
-      r_.set(i, source_[i] + p_.rho[i] * FB[i] - B[i]);
+      r_.set(i, source_[i] + p_.scattered(FB, i) - B[i]);
       e[transport_.space[i]] += p_.area[i] * r_[i];
     }
     for (std::size_t s = 0; s < e.size(); ++s)
       for (int c = 0; c < kMaxChannels; ++c) e[s][c] = ambient_loss_[s][c] > 0 ? e[s][c] / ambient_loss_[s][c] : 0;
     for (std::size_t i = 0; i < n_; ++i) {
-      const Spectrum rho_e = p_.rho[i] * e[transport_.space[i]];
-      B.add(i, rho_e);
-      FB.add(i, e[transport_.space[i]] * F_rho_[i]);
-      r_.set(i, r_[i] - rho_e * (Spectrum(1.0) - F_rho_[i]));
+      const Spectrum e_i = e[transport_.space[i]];
+      B.add(i, e_i * albedo_[i]);
+      FB.add(i, e_i * F_albedo_[i]);
+      r_.set(i, r_[i] - e_i * lost_[i]);
     }
   }
 
@@ -71,9 +74,10 @@ class System {
   const ElementTree& tree_;
   const Transport& transport_;
   std::size_t n_;
-  Field source_, r_, F_rho_, nodes_;
+  Field source_, r_, nodes_;
+  Field albedo_, F_albedo_, lost_;  ///< lost: albedo less what comes back of it
   Spectrum scale_;
-  std::vector<Spectrum> ambient_loss_;  ///< by space: sum A rho (1 - F rho) [m2]
+  std::vector<Spectrum> ambient_loss_;  ///< by space: sum A lost [m2]
 };
 
 }  // namespace
@@ -98,12 +102,12 @@ Solution balance(const PatchSet& patches, const ElementTree& tree, const Transpo
 
   const std::size_t n = patches.patch_count();
   s.E = s.B = Field(n, patches.channels);
+  for (std::size_t i = 0; i < n; ++i) s.E.set(i, E_direct[i] + system.FB[i]);
   for (std::size_t i = 0; i < n; ++i) {
-    const Spectrum E = E_direct[i] + system.FB[i], radiosity = patches.M[i] + patches.rho[i] * E;
-    s.E.set(i, E);
+    const Spectrum radiosity = patches.M[i] + patches.scattered(s.E, i);
     s.B.set(i, radiosity);
     const double arrives = double{transport.arrives[i]}, escapes = double{transport.escapes[i]};
-    s.energy.absorbed += patches.area[i] * luminous_mean((Spectrum(1.0) - patches.rho[i]) * E +
+    s.energy.absorbed += patches.area[i] * luminous_mean((Spectrum(1.0) - patches.albedo(i)) * s.E[i] +
                                                          radiosity * std::max(0.0, 1 - arrives - escapes));
     s.energy.escaped += patches.area[i] * luminous_mean(radiosity) * escapes;
   }

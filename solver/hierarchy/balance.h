@@ -1,5 +1,5 @@
 #pragma once
-// The radiosity equation on links: B = M + rho (E_direct + gather(B)).
+// The radiosity equation on links: B = M + rho E + tau E behind, E = E_direct + gather(B).
 
 #include <string>
 
@@ -12,7 +12,7 @@
 namespace clerestory {
 
 /// Sweeps until sum A |M + rho E - B| of every channel is below `residual` times the flux sum A (M + E_direct). After
-/// each one an ambient irradiance e of each space and channel, B += e rho, makes the area-weighted residual of the
+/// each one an ambient irradiance e of each space and channel, B += e albedo, makes the area-weighted residual of the
 /// space vanish, as in FullMatrixSystem: a few tens of sweeps at reflectance 0.9999 as at 0.5.
 ///
 /// E_direct  N x channels: small lights and transport.E_sky.

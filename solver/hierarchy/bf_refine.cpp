@@ -66,7 +66,7 @@ class PatchLinks {
     if (!tree.cluster[q] && dot(patches.normal[scene_.leaf(q)], d) > double{at.radius}) return;
     const double distance = length(d), near = double{at.radius} + double{from.radius};
     const double F = distance <= near ? 1 : std::min(1.0, tree.area[q] / (std::numbers::pi * distance * distance));
-    const double stake = luminous_mean(patches.rho[scene_.leaf(p)]) * tree.area[p] * F * double{scene_.B[q]};
+    const double stake = luminous_mean(patches.albedo(scene_.leaf(p))) * tree.area[p] * F * double{scene_.B[q]};
     const bool p_leaf = tree.is_leaf(p), q_leaf = tree.is_leaf(q);
     if (stake <= options_.flux_at_stake || (p_leaf && q_leaf)) {
       if (stake > options_.flux_at_stake) to_halve.push_back(scene_.leaf(tree.area[p] >= tree.area[q] ? p : q).value);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/hierarchy/leaves_behind.h"
+
 namespace clerestory {
 namespace {
 
@@ -234,6 +236,9 @@ PatchSet ElementMesh::leaf_patches() const {
     out.rho.set(i, patches_.rho[e.patch]);
     out.M.set(i, patches_.M[e.patch]);
   }
+  std::vector<std::uint32_t> patch_of_leaf(n);
+  for (std::size_t i = 0; i < n; ++i) patch_of_leaf[i] = elements_[leaf[i]].patch;
+  find_leaves_behind(patches_, patch_of_leaf, out);
   return out;
 }
 

@@ -179,7 +179,7 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
         const PatchId p{std::size_t{mesh[e].patch}};
         const double edge = mesh.edge_length(e, mesh[e].edge);
         const auto corners = mesh.corner_positions(e);
-        const double weight = luminous_mean(patches.rho[p]) * triangle_area(corners) / A0;
+        const double weight = luminous_mean(patches.albedo(p)) * triangle_area(corners) / A0;
         // Little varies by more than twice its mean between four parts.
         if (edge < 2 * options.shortest_edge || 2 * weight < options.tolerance / 2) continue;
         const Variation v =

@@ -405,7 +405,8 @@ class Tracer {
   double area_ = 0, sky_mean_ = 0, limit_ = 0, owed_ = 0, most_owed_ = 0;
 };
 
-void find_spaces(Transport& transport, const ElementTree& tree, std::span<const Receiver> receivers,
+void find_spaces(Transport& transport, const PatchSet& patches, const ElementTree& tree,
+                 std::span<const Receiver> receivers,
                  std::span<const std::array<std::uint32_t, kNeighbours>> neighbours) {
   const std::size_t n = tree.leaf_count();
   DisjointSets joined(n);
@@ -415,6 +416,8 @@ void find_spaces(Transport& transport, const ElementTree& tree, std::span<const 
     for (const std::uint32_t q : neighbours[r])
       if (q != PatchId::kNone) joined.join(p, q);
   }
+  for (std::size_t i = 0; i < n; ++i)
+    for (const PatchSet::Behind& other : patches.patches_behind(i)) joined.join(i, other.patch);
   transport.space.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t first = joined.find(i);
@@ -460,7 +463,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   }
   const int pairs = light.lamps.has_emitters() ? options.lamp_rays : 0;
   transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs);
-  find_spaces(transport, tree, receivers, neighbours);
+  find_spaces(transport, patches, tree, receivers, neighbours);
   return transport;
 }
 

@@ -48,11 +48,15 @@ FullMatrixSystem::FullMatrixSystem(const PatchSet& patches, const FormFactorMatr
       n_(patches.patch_count()),
       channels_(patches.channels) {
   const auto channel_count = static_cast<std::size_t>(channels_);
+  if (!patches.tau.value.empty()) tau = by_channel(patches.tau);
   source = by_channel(patches.M);
+  const auto E = by_channel(E_direct);
   for (std::size_t k = 0; k < channel_count; ++k)
-    for (std::size_t i = 0; i < n_; ++i) source[k][i] += rho[k][i] * E_direct.at(i, static_cast<int>(k));
+    for (std::size_t i = 0; i < n_; ++i) source[k][i] += rho[k][i] * E[k][i] + passed(k, i, E[k]);
 
   DisjointSets joined(n_);
+  for (std::size_t i = 0; i < n_; ++i)
+    for (const PatchSet::Behind& other : patches.patches_behind(i)) joined.join(i, other.patch);
   for (std::size_t i = 0; i < n_; ++i) {
     const auto row = F.row(i);
     for (std::size_t j = i + 1; j < n_; ++j)
@@ -66,11 +70,16 @@ FullMatrixSystem::FullMatrixSystem(const PatchSet& patches, const FormFactorMatr
     space_[i] = number[first];  // the smallest patch of a space comes first
   }
 
-  F_rho_.assign(channel_count, std::vector<double>(n_));
+  albedo_ = rho;
+  F_albedo_ = lost_ = std::vector(channel_count, std::vector<double>(n_));
   ambient_loss_.assign(channel_count, std::vector<double>(spaces_, 0.0));
   for (std::size_t k = 0; k < channel_count; ++k) {
-    gather_all(rho[k], F_rho_[k]);
-    for (std::size_t i = 0; i < n_; ++i) ambient_loss_[k][space_[i]] += area[i] * rho[k][i] * (1 - F_rho_[k][i]);
+    for (std::size_t i = 0; i < n_ && !tau.empty(); ++i) albedo_[k][i] += tau[k][i];
+    gather_all(albedo_[k], F_albedo_[k]);
+    for (std::size_t i = 0; i < n_; ++i) {
+      lost_[k][i] = albedo_[k][i] - rho[k][i] * F_albedo_[k][i] - passed(k, i, F_albedo_[k]);
+      ambient_loss_[k][space_[i]] += area[i] * lost_[k][i];
+    }
   }
   B = source;
   FB = residual = source;
@@ -94,7 +103,8 @@ void FullMatrixSystem::update_irradiance() {
 
 void FullMatrixSystem::update_residual() {
   for (std::size_t k = 0; k < B.size(); ++k)
-    for (std::size_t i = 0; i < n_; ++i) residual[k][i] = source[k][i] + rho[k][i] * FB[k][i] - B[k][i];
+    for (std::size_t i = 0; i < n_; ++i)
+      residual[k][i] = source[k][i] + rho[k][i] * FB[k][i] + passed(k, i, FB[k]) - B[k][i];
 }
 
 void FullMatrixSystem::correct_ambient() {
@@ -105,9 +115,9 @@ void FullMatrixSystem::correct_ambient() {
       ambient[s] = ambient_loss_[k][s] > 0 ? ambient[s] / ambient_loss_[k][s] : 0;
     for (std::size_t i = 0; i < n_; ++i) {
       const double e = ambient[space_[i]];
-      B[k][i] += e * rho[k][i];
-      FB[k][i] += e * F_rho_[k][i];
-      residual[k][i] -= e * rho[k][i] * (1 - F_rho_[k][i]);
+      B[k][i] += e * albedo_[k][i];
+      FB[k][i] += e * F_albedo_[k][i];
+      residual[k][i] -= e * lost_[k][i];
     }
   }
 }
@@ -127,16 +137,17 @@ Solution FullMatrixSystem::finish(std::string method) const {
   solution.method = std::move(method);
   solution.E = Field(n_, channels_);
   solution.B = Field(n_, channels_);
+  for (std::size_t i = 0; i < n_; ++i)
+    for (int k = 0; k < channels_; ++k) solution.E.at(i, k) = E_direct_.at(i, k) + FB[static_cast<std::size_t>(k)][i];
   for (std::size_t i = 0; i < n_; ++i) {
+    const Spectrum B_i = patches_.M[i] + patches_.scattered(solution.E, i);
     Spectrum emitted, absorbed, escaped;
     for (int k = 0; k < channels_; ++k) {
       const auto c = static_cast<std::size_t>(k);
-      const double E = E_direct_.at(i, k) + FB[c][i];
-      const double M = patches_.M.at(i, k), radiosity = M + rho[c][i] * E;
-      solution.E.at(i, k) = E;
+      const double radiosity = B_i[k];
       solution.B.at(i, k) = radiosity;
-      emitted[k] = area[i] * (M + E_direct_.at(i, k));
-      absorbed[k] = area[i] * (1 - rho[c][i]) * E;
+      emitted[k] = area[i] * (patches_.M.at(i, k) + E_direct_.at(i, k));
+      absorbed[k] = area[i] * (1 - albedo_[c][i]) * solution.E.at(i, k);
       // What a half-filled row does not place has not escaped: it is left over as imbalance.
       if (!F_.row_filled[i]) continue;
       const double lost = area[i] * radiosity * (1 - F_.row_sum[i] * F_.row_gain(i));

@@ -25,7 +25,8 @@ Solution gauss_seidel(const PatchSet& patches, const FormFactorMatrix& F, const 
             outside[i - first] = system.gather(i, B, 0, first) + system.gather(i, B, last, n);
         });
         for (std::size_t i = first; i < last; ++i)
-          B[i] = system.source[k][i] + system.rho[k][i] * (outside[i - first] + system.gather(i, B, first, last));
+          B[i] = system.source[k][i] + system.rho[k][i] * (outside[i - first] + system.gather(i, B, first, last)) +
+                 system.passed_of(k, i, B);
       }
     }
     system.update_irradiance();

@@ -90,7 +90,7 @@ Field above_ground(const PatchSet& leaves, const Field& B, const Round& round) {
   for (std::size_t i = 0; i < B.size(); ++i) {
     light[i] = luminous_mean(B[i]);
     area[round.space[i]] += leaves.area[i];
-    rho[round.space[i]] += leaves.area[i] * luminous_mean(leaves.rho[i]);
+    rho[round.space[i]] += leaves.area[i] * luminous_mean(leaves.albedo(i));
   }
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return light[a] < light[b] || (light[a] == light[b] && a < b); });
@@ -144,7 +144,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
     glow = inherited(above_ground(before->result.elements, before->result.solution.B, *before), *before, mesh);
   } else {
     glow = leaves.M;
-    for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.rho[i] * direct.E[i]);
+    for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.scattered(direct.E, i));
   }
   const ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
@@ -159,7 +159,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   } else {
     double first_flux = 0;
     for (std::size_t i = 0; i < n; ++i)
-      first_flux += leaves.area[i] * luminous_mean(leaves.M[i] + leaves.rho[i] * direct.E[i]);
+      first_flux += leaves.area[i] * luminous_mean(leaves.M[i] + leaves.scattered(direct.E, i));
     BfLinks links = bf_refine(problem, tree, before ? guess : glow,
                               {kStakeByTolerance * options.tolerance * first_flux, options.seed}, monitor);
     for (const std::uint32_t p : links.to_halve) {

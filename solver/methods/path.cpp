@@ -52,15 +52,15 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
   solution.E = solution.B = solution.std_error = Field(n, patches.channels);
   solution.energy = direct.energy;
   solution.rays = direct.rays + closure.rays;
+  for (std::size_t i = 0; i < n; ++i) solution.E.set(i, sums[i].mean());
   for (std::size_t i = 0; i < n; ++i) {
-    const Spectrum E = sums[i].mean(), B = patches.M[i] + patches.rho[i] * E;
+    const Spectrum E = solution.E[i], B = patches.M[i] + patches.scattered(solution.E, i);
     const Spectrum lost_in_glass = Spectrum(1.0) - closure.arrives[i] - closure.escapes[i];
-    solution.E.set(i, E);
     solution.B.set(i, B);
     solution.std_error.set(i, sums[i].std_error());
     solution.energy.emitted += patches.area[i] * luminous_mean(patches.M[i]);
     solution.energy.absorbed +=
-        patches.area[i] * luminous_mean((Spectrum(1.0) - patches.rho[i]) * E + lost_in_glass * B);
+        patches.area[i] * luminous_mean((Spectrum(1.0) - patches.albedo(i)) * E + lost_in_glass * B);
     solution.energy.escaped += patches.area[i] * luminous_mean(closure.escapes[i] * B);
     solution.iterations += static_cast<long>(sums[i].count);
     solution.rays += rays[i];

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/model/units.h"
 #include "solver/sampling.h"
 
 namespace clerestory {
@@ -35,6 +36,12 @@ Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, cons
   }
   ++rays;
   return s.irradiance * light.problem.rays.transmittance(p, s.end) * weight;
+}
+
+/// Of the light that patch q scatters, the share that leaves its other side; below 1 where it reflects.
+double share_that_passes(const PatchSet& patches, PatchId q) {
+  const double through = luminous_mean(patches.tau[q]), back = luminous_mean(patches.rho[q]);
+  return through > 0 ? through / (through + back) : 0;
 }
 
 }  // namespace
@@ -73,10 +80,12 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
       }
       E += throughput * M * weight;
     }
-    throughput *= patches.rho[hit.patch];
+    const double passes = patches.tau.value.empty() ? 0 : share_that_passes(patches, hit.patch);
+    const bool through = passes > 0 && random.uniform() < passes;
+    throughput *= through ? patches.tau[hit.patch] / passes : patches.rho[hit.patch] / (1 - passes);
     if (throughput.is_black()) return E;
     p = p + d * static_cast<double>(hit.distance);
-    n = patches.normal[hit.patch];
+    n = through ? -patches.normal[hit.patch] : patches.normal[hit.patch];
     p += n * problem.rays.lift();
     choice = {random.uniform(), random.uniform(), random.uniform()};
     square = {random.uniform(), random.uniform()};

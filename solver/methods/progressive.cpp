@@ -48,7 +48,7 @@ std::vector<Spectrum> ambient_radiosity(const Unshot& light, const Closure& clos
   std::vector<Spectrum> unshot(closure.spaces), lost(closure.spaces);
   for (std::size_t i = 0; i < p.patch_count(); ++i) {
     unshot[closure.space[i]] += p.area[i] * light.dB[i];
-    lost[closure.space[i]] += p.area[i] * (Spectrum(1.0) - p.rho[i] * closure.arrives[i]);
+    lost[closure.space[i]] += p.area[i] * (Spectrum(1.0) - p.scattered(closure.arrives, i));
   }
   for (std::size_t s = 0; s < closure.spaces; ++s) unshot[s] = divided(unshot[s], lost[s]);
   return unshot;
@@ -57,7 +57,7 @@ std::vector<Spectrum> ambient_radiosity(const Unshot& light, const Closure& clos
 Spectrum unshot_after_ambient(const Unshot& light, const Closure& closure, const std::vector<Spectrum>& e,
                               std::size_t i) {
   const Spectrum e_i = e[closure.space[i]];
-  return light.dB[i] - e_i + light.patches.rho[i] * closure.arrives[i] * e_i;
+  return light.dB[i] - e_i + light.patches.scattered(closure.arrives, i) * e_i;
 }
 
 /// Shoots the uniform radiosity e of each space from all its patches.
@@ -138,6 +138,8 @@ void deposit(Unshot& light, const Piece& piece, std::span<const Landing> landing
         light.E.at(q, c) += E;
         light.dB.at(q, c) += p.rho.at(q, c) * E;
       }
+      for (const auto& [other, share] : p.patches_behind(q))
+        light.dB.add(other, p.tau[q] * arriving * (share / p.area[other]));
     }
   }
 }
@@ -151,7 +153,7 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
   Unshot light{p, direct.E, Field(n, p.channels)};
   double glow = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    light.dB.set(i, p.M[i] + p.rho[i] * direct.E[i]);
+    light.dB.set(i, p.M[i] + p.scattered(direct.E, i));
     glow += p.area[i] * luminous_mean(p.M[i]);
   }
 
@@ -232,8 +234,8 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
   solution.E = light.E;
   solution.B = Field(n, p.channels);
   for (std::size_t i = 0; i < n; ++i) {
-    solution.energy.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - p.rho[i]) * light.E[i]);
-    solution.B.set(i, p.M[i] + p.rho[i] * light.E[i]);
+    solution.energy.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - p.albedo(i)) * light.E[i]);
+    solution.B.set(i, p.M[i] + p.scattered(light.E, i));
   }
   solution.energy.absorbed += light.absorbed;
   solution.energy.escaped += light.escaped;

@@ -10,6 +10,21 @@ bool side_reflects_and_emits(const PatchSet& p, PatchId i) {
   return p.side[i] == kFront || p.materials[p.material(i)].sides == 2 || (!p.joined.empty() && p.joined[t]);
 }
 
+/// tau, and what lies behind the patches of diffusers.
+void join_diffuser_sides(PatchSet& p) {
+  for (std::size_t i = 0; i < p.patch_count(); ++i) {
+    if (!p.is_diffuser(p.triangle[i])) continue;
+    if (p.tau.value.empty()) p.tau = Field(p.patch_count(), p.channels);
+    p.tau.set(i, p.materials[p.material(PatchId{i})].transmittance);
+  }
+  if (p.tau.value.empty()) return;
+  for (std::size_t i = 0; i < p.patch_count(); ++i) {
+    p.behind_begin.push_back(static_cast<std::uint32_t>(p.behind.size()));
+    if (p.is_diffuser(p.triangle[i])) p.behind.push_back({p.side_patch[p.triangle[i]][1 - p.side[i]], 1});
+  }
+  p.behind_begin.push_back(static_cast<std::uint32_t>(p.behind.size()));
+}
+
 }  // namespace
 
 std::array<Vec3, 3> PatchSet::corner_positions(PatchId p) const {
@@ -43,6 +58,9 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   p.area.clear();
   p.normal.clear();
   p.level.clear();
+  p.tau = Field();
+  p.behind_begin.clear();
+  p.behind.clear();
   p.side_patch.assign(p.triangle_count(), {PatchId{}, PatchId{}});
   for (std::size_t t = 0; t < p.triangle_count(); ++t) {
     if (p.is_glass(TriangleId{t})) continue;
@@ -51,8 +69,9 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
     const Vec3 scaled_normal = cross(p.vertices[c[1]] - a, p.vertices[c[2]] - a);
     const double area = length(scaled_normal) / 2;
     if (!(area > 0)) continue;
+    const bool both = p.is_diffuser(TriangleId{t}) && (wanted[2 * t] || wanted[2 * t + 1]);
     for (const Side side : {kFront, kBack}) {
-      if (!wanted[2 * t + side]) continue;
+      if (!wanted[2 * t + side] && !both) continue;
       p.side_patch[t][side] = PatchId{p.triangle.size()};
       p.triangle.push_back(TriangleId{t});
       p.side.push_back(side);
@@ -75,6 +94,7 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
     p.rho.set(i, material.reflectance);
     p.M.set(i, material.total_power ? *material.total_power / emitting_area[m] : material.exitance);
   }
+  join_diffuser_sides(p);
 }
 
 }  // namespace clerestory

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,16 @@ struct PatchSet {
   std::vector<Vec3> normal;          ///< N, unit, away from the surface on the patch's side
   Field rho;                         ///< N, reflectance [1]
   Field M;                           ///< N, exitance [W/m2]
+  Field tau;                         ///< N, share that diffusers pass to their other side [1]; empty: there are none
   std::vector<std::uint8_t> level;   ///< N, halvings since the patch; empty: none was halved
+
+  /// A patch on the other side of a diffuser's patch, and the share of that patch's area which it covers.
+  struct Behind {
+    PatchId patch;
+    double share;
+  };
+  std::vector<std::uint32_t> behind_begin;  ///< N + 1; empty like tau
+  std::vector<Behind> behind;
 
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< by SurfaceId
@@ -61,17 +71,32 @@ struct PatchSet {
   MaterialId material(PatchId p) const { return side_material[triangle[p]][side[p]]; }
   SurfaceId surface(PatchId p) const { return side_surface[triangle[p]][side[p]]; }
   bool is_glass(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::glass; }
+  bool is_diffuser(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::diffuser; }
   /// The patch that a ray meets in its triangle t (T counted before splits), at barycentric weights u, v of corners
   /// 1, 2.
   PatchId patch_at(TriangleId t, Side side, double u, double v) const;
   /// Corner positions of patch p, counter-clockwise seen from its side.
   std::array<Vec3, 3> corner_positions(PatchId p) const;
   double total_area() const;
+
+  std::span<const Behind> patches_behind(std::size_t p) const {
+    if (tau.value.empty()) return {};
+    return std::span(behind).subspan(behind_begin[p], behind_begin[p + 1] - behind_begin[p]);
+  }
+  /// What leaves patch p of the light that arrives as E (N x channels) on both of its sides: rho E + tau E behind.
+  Spectrum scattered(const Field& E, std::size_t p) const {
+    Spectrum B = rho[p] * E[p];
+    for (const Behind& other : patches_behind(p)) B += tau[p] * E[other.patch] * other.share;
+    return B;
+  }
+  /// Share of the light that falls on patch p and is not absorbed [1].
+  Spectrum albedo(std::size_t p) const { return tau.value.empty() ? rho[p] : rho[p] + tau[p]; }
 };
 
 /// (Re)builds the patch arrays from the triangles: one patch for each side with wanted[2 * t + side], in that order;
-/// glass has none. Area, normal, rho and M follow from the materials; a material's total power is shared over the
-/// area of its emitting patches; the back of a one-sided material is black, unless it is the front of a joined face.
+/// glass has none, and a diffuser's sides go together. Area, normal, rho and M follow from the materials; a material's
+/// total power is shared over the area of its emitting patches; the back of a one-sided material is black, unless it is
+/// the front of a joined face.
 void make_patches(PatchSet& patches, const std::vector<bool>& wanted);
 
 }  // namespace clerestory

@@ -78,6 +78,24 @@ TEST(WriteResult, ColoursOrientationAndDistanceSurviveTheFile) {
   EXPECT_EQ(result.numbers.at("settings.seed").values, std::vector<double>{7});
 }
 
+TEST(WriteResult, ADiffuserShowsTheLightBehindItsOwnPoints) {
+  const TempFolder folder;
+  Sheet s;
+  Material& blind = s.patches.materials[0];
+  blind.kind = MaterialKind::diffuser, blind.reflectance = Spectrum(0.5), blind.transmittance = Spectrum(0.25);
+  s.patches.side_material[0][kBack] = s.patches.side_material[0][kFront];
+  make_patches(s.patches, {true, true});
+  for (std::size_t i = 3; i < 6; ++i) s.lightmap.E.set(i, Spectrum(20.0 * static_cast<double>(i)));
+  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, std::nullopt, s.report);
+  const auto B = read_result(folder / "a.vtp").of_points.at("radiosity").values;
+  ASSERT_EQ(B.size(), 6u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double behind = 20.0 * static_cast<double>(i + 3);
+    EXPECT_NEAR(B[i], 0.5 * 10 + 0.25 * behind, 1e-5);
+    EXPECT_NEAR(B[i + 3], 0.5 * behind + 0.25 * 10, 1e-5);
+  }
+}
+
 TEST(WriteResult, StandardErrorsAndDaylightFactorsOnlyWhereThereAreAny) {
   const TempFolder folder;
   Sheet s;

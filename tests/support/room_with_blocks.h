@@ -38,6 +38,14 @@ class PatchBuilder {
     material_ = MaterialId{set_.materials.size() - 1};
     return *this;
   }
+  /// A diffuser for what is added from now on.
+  PatchBuilder& diffuser(double reflectance, double transmittance) {
+    Material m;
+    m.kind = MaterialKind::diffuser, m.reflectance = Spectrum(reflectance), m.transmittance = Spectrum(transmittance);
+    set_.materials.push_back(m);
+    material_ = MaterialId{set_.materials.size() - 1};
+    return *this;
+  }
   /// A new named surface for what is added from now on.
   PatchBuilder& surface(const std::string& name) {
     set_.surfaces.push_back(name);

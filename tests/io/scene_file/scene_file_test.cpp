@@ -80,7 +80,7 @@ TEST_F(SceneFile, GlassPassesItsTransmittance) {
       wood_refusal(R"({ "type": "glass", "transmittance": 1.5 })"),
       "s.json: materials 'wood': transmittance = 1.5 is outside [0, 1]; a sheet cannot pass more than it receives.");
   EXPECT_EQ(wood_refusal(R"({ "transmittance": 0.5 })"),
-            "s.json: materials 'wood': transmittance needs \"type\": \"glass\"");
+            "s.json: materials 'wood': transmittance needs \"type\": \"glass\" or \"diffuser\"");
 }
 
 TEST_F(SceneFile, GlassThatPassesMoreThanClearGlassIsTakenAsCoated) {
@@ -93,6 +93,21 @@ TEST_F(SceneFile, GlassThatPassesMoreThanClearGlassIsTakenAsCoated) {
       warnings("0.98").front(),
       "s.json: materials '*': transmittance = 0.98 is more than the 0.918 of clear glass; taken as glass coated to "
       "reflect less");
+}
+
+TEST_F(SceneFile, ADiffuserReflectsAndPassesLessThanItReceives) {
+  const Material blind = wood(R"({ "type": "diffuser", "transmittance": 0.3, "reflectance": 0.5 })");
+  EXPECT_EQ(blind.kind, MaterialKind::diffuser);
+  EXPECT_EQ(blind.transmittance, Spectrum(0.3));
+  EXPECT_EQ(blind.reflectance, Spectrum(0.5));
+  EXPECT_EQ(
+      wood_refusal(R"({ "type": "diffuser", "transmittance": [0.3, 0.6, 0.1], "reflectance": 0.5 })"),
+      "s.json: materials 'wood': reflectance + transmittance = 1.1 is outside [0, 1); a sheet cannot give back and "
+      "pass more than it receives");
+  EXPECT_NE(wood_refusal(R"({ "type": "diffuser", "reflectance": 0.5 })").find("transmittance is missing"),
+            std::string::npos);
+  EXPECT_EQ(wood_refusal(R"({ "type": "diffuser", "transmittance": 0.3, "sides": 1 })"),
+            "s.json: materials 'wood': sides = 1: a diffuser acts on both of its sides");
 }
 
 TEST_F(SceneFile, LuminairesArePointsWithTheirFluxDimmedAndGrouped) {
@@ -338,9 +353,6 @@ TEST_F(SceneFile, TransformsAreSixteenNumbersWithAnInverse) {
 TEST_F(SceneFile, WhatALaterVersionReadsIsNamedAsSuch) {
   EXPECT_NE(wood_refusal(R"({ "type": "mirror", "reflectance": 0.9 })")
                 .find("'mirror' is not available in this version; use"),
-            std::string::npos);
-  EXPECT_NE(wood_refusal(R"({ "type": "diffuser", "transmittance": 0.3 })")
-                .find("'diffuser' is not available in this version"),
             std::string::npos);
 }
 

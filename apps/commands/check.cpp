@@ -76,7 +76,9 @@ void say_lights(const Scene& scene, Console& console) {
                 rounded(photometric(w.scale) * w.web->flux) + " lm");
   if (l.sky)
     console.say("  light    " + describe(l.sky->model) + " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +
-                " lx on open ground, ground reflectance " + rounded(l.sky->ground_reflectance));
+                " lx on open ground, " +
+                (l.sky->image_has_ground ? "ground as in the image"
+                                         : "ground reflectance " + rounded(l.sky->ground_reflectance)));
   for (const auto& s : l.suns)
     console.say("  light    sun from (" + rounded(s.direction.x) + ", " + rounded(s.direction.y) + ", " +
                 rounded(s.direction.z) + "), " + rounded(photometric(s.normal_irradiance)) + " lx");

@@ -60,6 +60,7 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   s.channels = scene.channels();
   if (arguments.channels) s.channels = *arguments.channels == "1" ? 1 : 3;
   if (arguments.grey) s.channels = 1;
+  s.debug = !arguments.debug_output.empty();
   return s;
 }
 

@@ -19,6 +19,7 @@ struct SolveArguments {
   std::optional<double> max_element, target_error, time_limit;
   std::optional<std::string> memory_limit;
   bool grey = false;
+  std::string debug_output;  ///< folder; empty when not asked for
 };
 
 struct Settings {
@@ -28,6 +29,7 @@ struct Settings {
   std::optional<double> time_limit;         ///< [s]
   std::optional<std::size_t> memory_limit;  ///< [bytes]
   int channels = 1;
+  bool debug = false;  ///< whether the hierarchy is to be shown
 
   /// For the next try at the target error: elements of half the area, twice the rays.
   void tighten(double max_element_in_force);

@@ -5,6 +5,7 @@
 #include "io/run_report.h"
 #include "solver/lit_sides.h"
 #include "solver/measured_error.h"
+#include "solver/model/hierarchy_debug.h"
 #include "solver/model/patch_set.h"
 #include "solver/model/scene.h"
 #include "solver/model/solution.h"
@@ -21,6 +22,7 @@ struct Solved {
   VertexLightmap lightmap;
   Field sensor_E;
   std::optional<MeasuredError> error, error_sensors;
+  HierarchyDebug debug;  ///< empty unless asked for
 };
 
 void fill_report(RunReport& report, const Scene& scene, const Solved& solved);

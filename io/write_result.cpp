@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 #include <vtkCellArray.h>
@@ -15,28 +13,15 @@
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
-#include <vtkXMLPolyDataWriter.h>
 
-#include "io/atomic_file.h"
-#include "solver/model/error.h"
+#include "io/vtp_file.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
 namespace {
-
-vtkIdType id(std::size_t i) { return static_cast<vtkIdType>(i); }
-
-/// The last door before the file: a NaN here is our own mistake and must not reach a user's picture.
-float to_float(double value, const char* array, std::size_t i) {
-  if (!(std::abs(value) <= std::numeric_limits<float>::max()))
-    throw std::runtime_error(std::string(array) + "[" + std::to_string(i) + "] = " + std::to_string(value) +
-                             " is not a number a result can hold");
-  return static_cast<float>(value);
-}
 
 void add_field(vtkFieldData* to, const char* name, const Field& field) {
   vtkNew<vtkFloatArray> array;
@@ -44,15 +29,6 @@ void add_field(vtkFieldData* to, const char* name, const Field& field) {
   array->SetNumberOfComponents(field.channels);
   array->SetNumberOfTuples(id(field.size()));
   for (std::size_t i = 0; i < field.value.size(); ++i) array->SetValue(id(i), to_float(field.value[i], name, i));
-  to->AddArray(array);
-}
-
-template <class Value>
-void add_values(vtkFieldData* to, const char* name, std::size_t n, const Value& value) {
-  vtkNew<vtkFloatArray> array;
-  array->SetName(name);
-  array->SetNumberOfTuples(id(n));
-  for (std::size_t i = 0; i < n; ++i) array->SetValue(id(i), to_float(value(i), name, i));
   to->AddArray(array);
 }
 
@@ -137,35 +113,9 @@ void add_indices_of_patches(vtkFieldData* to, const PatchSet& patches) {
   add_values(to, "area", n, [&](std::size_t i) { return patches.area[i]; });
 }
 
-/// Double, because georeferenced models lie 1e6 m from the origin.
-void set_points(vtkPolyData* data, const std::vector<Vec3>& local, const Vec3& origin) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(id(local.size()));
-  for (std::size_t i = 0; i < local.size(); ++i) {
-    const Vec3 p = local[i] + origin;
-    points->SetPoint(id(i), p.x, p.y, p.z);
-  }
-  data->SetPoints(points);
-}
-
 void add_triangle(vtkCellArray* cells, std::size_t a, std::size_t b, std::size_t c) {
   const vtkIdType corners[3] = {id(a), id(b), id(c)};
   cells->InsertNextCell(3, corners);
-}
-
-void write(const std::filesystem::path& destination, vtkPolyData* data) {
-  AtomicFile file(destination);
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetFileName(file.path().c_str());
-  writer->SetInputData(data);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);  // 6 halves the speed and saves 3 % on float fields
-  if (writer->Write() == 0 || writer->GetErrorCode() != 0)
-    throw InputError(destination.string() + ": could not be written; is the disk full?");
-  file.commit();
 }
 
 struct Quality {
@@ -200,7 +150,7 @@ void write_result(const std::filesystem::path& file, const PatchSet& patches, co
   add_field_data(data, patches, report);
   data->GetCellData()->SetActiveScalars("illuminance");
   data->GetPointData()->SetActiveScalars("illuminance");
-  write(file, data);
+  write_vtp(file, data);
 }
 
 void write_patches(const std::filesystem::path& file, const PatchSet& patches, const RunReport& report) {
@@ -223,7 +173,7 @@ void write_patches(const std::filesystem::path& file, const PatchSet& patches, c
   add_indices_of_patches(to, patches);
   add_field_data(data, patches, report);
   to->SetActiveScalars("min_angle");
-  write(file, data);
+  write_vtp(file, data);
 }
 
 }  // namespace clerestory

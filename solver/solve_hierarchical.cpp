@@ -18,6 +18,7 @@ struct Detail {
   double element_tolerance;  ///< of the irradiance within an element
   double vertex_tolerance;   ///< of the irradiance between vertices
   double finest;             ///< shortest edge / longest edge
+  std::size_t most_points;   ///< gathered
 };
 
 Detail detail(const SolveOptions& options) {
@@ -25,11 +26,11 @@ Detail detail(const SolveOptions& options) {
   const double finer = std::pow(0.7071, options.tighten);
   switch (options.accuracy) {
     case Accuracy::draft:
-      return {64 * more, 64 * more, 0.3, 0.08 * finer, 1.0 / 4};
+      return {64 * more, 64 * more, 0.3, 0.08 * finer, 1.0 / 4, 100'000};
     case Accuracy::standard:
-      return {512 * more, 256 * more, 0.1, 0.025 * finer, 1.0 / 8};
+      return {512 * more, 256 * more, 0.1, 0.025 * finer, 1.0 / 8, 400'000};
     case Accuracy::fine:
-      return {512 * more, 512 * more, 0.05, 0.0125 * finer, 1.0 / 16};
+      return {512 * more, 512 * more, 0.05, 0.0125 * finer, 1.0 / 16, 1'600'000};
   }
   return {};
 }
@@ -43,8 +44,8 @@ MemoryCounts whole(const Problem& problem, const VertexLightmap& map) {
 /// The detail that was asked for, or what a limit of memory leaves of it.
 std::optional<MemoryPlan> memory_plan(const Problem& problem, const VertexLightmap& map, const SolveOptions& options) {
   const Detail d = detail(options);
-  const MemoryPlan wish{20 * map.position.size() + 10'000, HierarchyOptions{}.most_elements, d.bundle_rays,
-                        d.lamp_rays};
+  const MemoryPlan wish{std::min(20 * map.position.size() + 10'000, d.most_points), HierarchyOptions{}.most_elements,
+                        d.bundle_rays, d.lamp_rays};
   if (options.memory_limit == 0) return wish;
   return plan_memory(whole(problem, map), wish, options.memory_limit);
 }
@@ -64,6 +65,7 @@ Field field_on_leaves(const ElementMesh& mesh, const std::vector<std::uint32_t>&
     std::size_t end = begin;
     Spectrum mean(0.0);
     double low = 1e300, high = 0, share = 0;
+    bool known = true;
     for (stack.assign(1, transport_leaves[j]); !stack.empty();) {
       const auto& e = mesh[stack.back()];
       stack.pop_back();
@@ -73,6 +75,7 @@ Field field_on_leaves(const ElementMesh& mesh, const std::vector<std::uint32_t>&
       }
       const double part = std::ldexp(1.0, -e.level);
       for (const std::uint32_t p : e.point) {
+        known = known && field.known[p];
         const Spectrum lamps = field.small_lights[p];
         mean += lamps * (part / 3);
         low = std::min(low, luminous_mean(lamps)), high = std::max(high, luminous_mean(lamps));
@@ -81,7 +84,7 @@ Field field_on_leaves(const ElementMesh& mesh, const std::vector<std::uint32_t>&
       ++end;
     }
     const Spectrum exact = coarse.small_lights[j];
-    if (high - low > kVaries * high) {
+    if (known && high - low > kVaries * high) {
       const Spectrum missing = exact - mean / share;
       for (std::size_t i = begin; i < end; ++i) {
         E.add(i, missing);
@@ -93,18 +96,29 @@ Field field_on_leaves(const ElementMesh& mesh, const std::vector<std::uint32_t>&
   return E;
 }
 
-/// Points not reached take the mean of the elements around them, middles that of the ends they stand between.
-void fill_unreached(const ElementMesh& mesh, const std::vector<std::uint32_t>& transport_leaves,
-                    const PatchSet& elements, const Field& E, VertexField& field) {
+/// Points not gathered take the mean of the elements around them, middles that of the ends they stand between.
+void fill_unknown(const ElementMesh& mesh, const std::vector<std::uint32_t>& transport_leaves, const PatchSet& elements,
+                  const Field& E, VertexField& field) {
   std::vector<double> area(field.E.size(), 0.0);
   for (std::size_t j = 0; j < transport_leaves.size(); ++j)
     for (const std::uint32_t p : mesh[transport_leaves[j]].point) {
-      if (p < field.reached) continue;
+      if (field.known[p]) continue;
       field.E.set(p, (field.E[p] * area[p] + E[j] * elements.area[j]) / (area[p] + elements.area[j]));
       area[p] += elements.area[j];
     }
-  for (std::size_t p = field.reached; p < field.E.size(); ++p)
-    if (area[p] == 0) field.E.set(p, (field.E[mesh.ends(p)[0]] + field.E[mesh.ends(p)[1]]) / 2);
+  for (std::size_t p = 0; p < field.E.size(); ++p)
+    if (area[p] == 0 && !field.known[p]) field.E.set(p, (field.E[mesh.ends(p)[0]] + field.E[mesh.ends(p)[1]]) / 2);
+}
+
+void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<3>& out) {
+  std::vector<double> interpolation, noise, halvings;
+  for (const auto& [leaf, off, level, standard_error] : leaf_errors(mesh, field)) {
+    out.shapes.push_back(mesh.corner_positions(leaf));
+    interpolation.push_back(level > 0 ? off / level : 0);
+    noise.push_back(level > 0 ? standard_error / level : 0);
+    halvings.push_back(mesh[leaf].level);
+  }
+  out.values = {{"interpolation_error", interpolation}, {"noise", noise}, {"level", halvings}};
 }
 
 }  // namespace
@@ -114,18 +128,19 @@ bool has_memory_for(const Problem& problem, const VertexLightmap& map, const Sol
   return options.memory_limit == 0 || predicted_memory(whole(problem, map)) <= options.memory_limit;
 }
 
-ShownSolution solve_hierarchical(const Problem& problem, const VertexLightmap& map, double longest_edge,
-                                 const SolveOptions& options, const Monitor& monitor) {
+ShownSolution solve_hierarchical(const Problem& problem, VertexLightmap map, double longest_edge,
+                                 const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
   const Detail d = detail(options);
   const MemoryPlan plan = memory_plan(problem, map, options).value_or(MemoryPlan{0, 0, 32, 16});
-  ElementMesh mesh(problem.patches, map);
+  ElementMesh mesh(problem.patches, std::move(map));
   HierarchicalSolution coarse = hierarchical(problem, mesh,
                                              {.bundle_rays = plan.bundle_rays,
                                               .lamp_rays = plan.lamp_rays,
                                               .tolerance = d.element_tolerance,
                                               .shortest_edge = d.finest * longest_edge,
                                               .most_elements = plan.most_elements,
-                                              .seed = options.seed},
+                                              .seed = options.seed,
+                                              .debug = debug},
                                              monitor);
   const std::vector<std::uint32_t> transport_leaves = mesh.leaves();
   const Problem transport{coarse.elements, problem.rays, problem.lights};
@@ -137,21 +152,23 @@ ShownSolution solve_hierarchical(const Problem& problem, const VertexLightmap& m
                                     .seed = options.seed},
                                    monitor);
 
-  ShownSolution shown{mesh.leaf_patches(), mesh.leaf_lightmap(), std::move(coarse.solution)};
-  Solution& solution = shown.solution;
+  if (debug) view_errors(mesh, field, debug->error);
+
+  Solution solution = std::move(coarse.solution);
   solution.rays += field.rays;
   solution.log.push_back(std::to_string(transport_leaves.size()) + " elements for transport, " +
                          std::to_string(mesh.leaf_count()) + " shown on " +
                          std::to_string(mesh.points().position.size()) + " points");
-  if (!field.complete) {
-    if (solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
-    fill_unreached(mesh, transport_leaves, coarse.elements, solution.E, field);
-  }
+  if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
+  fill_unknown(mesh, transport_leaves, coarse.elements, solution.E, field);
+  coarse.elements = {};  // a million of them are a third of a gigabyte
   solution.E = field_on_leaves(mesh, transport_leaves, coarse, field);
+  ShownSolution shown{mesh.leaf_patches(), std::move(mesh).leaf_lightmap(), {}};
   shown.lightmap.E = std::move(field.E);
   solution.B = Field(shown.elements.patch_count(), shown.elements.channels);
   for (std::size_t i = 0; i < shown.elements.patch_count(); ++i)
     solution.B.set(i, shown.elements.M[i] + shown.elements.scattered(solution.E, i));
+  shown.solution = std::move(solution);
   return shown;
 }
 

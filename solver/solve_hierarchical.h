@@ -1,6 +1,7 @@
 #pragma once
 // The default method from patches to a field on vertices: elements halved for transport, then for what is shown.
 
+#include "solver/model/hierarchy_debug.h"
 #include "solver/model/vertex_lightmap.h"
 #include "solver/solve.h"
 
@@ -21,9 +22,11 @@ bool has_memory_for(const Problem& problem, const VertexLightmap& map, const Sol
 ///
 /// map           the lightmap of problem.patches.
 /// longest_edge  of the patches [m]; elements are halved down to a share of it.
+/// debug         filled where it is asked for; nothing is computed for it otherwise.
 /// Stopped early, vertices not reached show their element's irradiance; Solution::stop tells.
 /// Threads: same bits for any thread count.
-ShownSolution solve_hierarchical(const Problem& problem, const VertexLightmap& map, double longest_edge,
-                                 const SolveOptions& options, const Monitor& monitor = {});
+ShownSolution solve_hierarchical(const Problem& problem, VertexLightmap map, double longest_edge,
+                                 const SolveOptions& options, const Monitor& monitor = {},
+                                 HierarchyDebug* debug = nullptr);
 
 }  // namespace clerestory

@@ -15,6 +15,7 @@
 #include "apps/wording.h"
 #include "io/atomic_file.h"
 #include "io/read_sensors.h"
+#include "io/write_debug.h"
 #include "io/write_result.h"
 #include "io/write_sensors.h"
 #include "meshing/make_lightmap.h"
@@ -150,8 +151,10 @@ std::optional<Solved> solve_scene(const Scene& scene, Settings settings, std::sp
 
   Lap lap;
   Solution solution;
+  HierarchyDebug debug;
   if (settings.solve.method == Method::hierarchical) {
-    ShownSolution shown = solve_hierarchical(problem, lightmap, repairs.max_element, settings.solve, monitor);
+    ShownSolution shown = solve_hierarchical(problem, std::move(lightmap), repairs.max_element, settings.solve, monitor,
+                                             settings.debug ? &debug : nullptr);
     solution = std::move(shown.solution);
     lightmap = std::move(shown.lightmap);
     patches = std::move(shown.elements);  // rays know which part of a triangle is which element
@@ -177,7 +180,7 @@ std::optional<Solved> solve_scene(const Scene& scene, Settings settings, std::sp
   if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
   lap.add_to(seconds.measure);
   return Solved{std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),
-                std::move(at_sensors.E), error,   error_sensors};
+                std::move(at_sensors.E), error,   error_sensors,        std::move(debug)};
 }
 
 /// Met for sure: the measured error and what is uncertain about it.
@@ -259,6 +262,14 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
   Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   if (settings.channels == 1) make_grey(scene);
+  if (settings.debug) {
+    if (settings.solve.method != Method::hierarchical) {
+      console.fail("--debug-output shows the hierarchical method only, and the method is " +
+                   std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
+      return kWrongUsage;
+    }
+    check_debug_folder(arguments.solve.debug_output);
+  }
   warn_about_scene(scene, console);
   require_light(scene);
   const std::vector<SensorPoint> sensors = all_sensor_points(scene);
@@ -290,6 +301,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   write_result(arguments.output, solved.patches, solved.lightmap, solved.solution, daylight_reference(scene.lights),
                report);
   if (!sensors.empty()) write_sensors(sensors_file, sensors, solved.sensor_E);
+  if (settings.debug) write_debug(arguments.solve.debug_output, solved.debug, solved.patches.origin);
   writing.add_to(report.seconds.write);
 
   const ExitCode code = exit_code(solved, settings);
@@ -330,16 +342,23 @@ void add_solve_command(CLI::App& program, Task& task) {
       ->type_name("POINTS.csv");
   command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")
       ->type_name("OUT.csv");
+  command
+      .add_option("--debug-output", s.debug_output,
+                  "also show the hierarchy: hierarchy.vtp, links.vtp, rays.vtp and error.vtp, written there")
+      ->type_name("DIR");
   add_choice(command, "--channels", s.channels, {"1", "3"}, "1 = grey, 3 = colour (default: what the scene needs)");
   command.add_flag("--grey", s.grey, "solve in one channel, the same as --channels 1")->excludes("--channels");
   add_common_options(command, arguments->common);
   command.footer("example: clerestory solve data/scenes/office.json -o office.vtp --accuracy fine");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, arguments->input,
-                 {{"--sensors", arguments->sensors, false},
-                  {"-o", arguments->output},
-                  {"--sensors-out", sensors_output(*arguments).string()}},
+      std::vector<NamedFile> files = {{"--sensors", arguments->sensors, false},
+                                      {"-o", arguments->output},
+                                      {"--sensors-out", sensors_output(*arguments).string()}};
+      if (!arguments->solve.debug_output.empty())
+        for (const auto& file : debug_files(arguments->solve.debug_output))
+          files.push_back({"--debug-output", file.string()});
+      return run(arguments->common, arguments->input, std::move(files),
                  [&](Console& console) { return solve_command(*arguments, console); });
     };
   });

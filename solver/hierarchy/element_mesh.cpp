@@ -26,37 +26,34 @@ EdgeKey edge_key(const std::vector<Vec3>& vertices, std::uint32_t a, std::uint32
 
 }  // namespace
 
-ElementMesh::ElementMesh(const PatchSet& patches, const VertexLightmap& map)
+ElementMesh::ElementMesh(const PatchSet& patches, VertexLightmap map)
     : patches_(patches),
       vertices_(patches.vertices),
-      first_middle_(map.position.size()),
+      points_(std::move(map)),
+      first_middle_(points_.position.size()),
       leaf_count_(patches.patch_count()) {
-  points_.position = map.position;
-  points_.patch_of_point = map.patch_of_point;
-  points_.sample_begin = map.sample_begin;
-  points_.sample_position = map.sample_position;
-  points_.sample_normal = map.sample_normal;
-  points_.sample_weight = map.sample_weight;
   elements_.resize(patches.patch_count());
   for (std::uint32_t p = 0; p < elements_.size(); ++p) {
     Element& e = elements_[p];
     const auto& c = patches.corners[patches.triangle[p]];
     const bool front = patches.side[p] == kFront;
     e.vertex = {c[0].value, c[front ? 1 : 2].value, c[front ? 2 : 1].value};
-    e.point = map.corners[p];
-    e.neighbour = map.neighbour[p];
+    e.point = points_.corners[p];
+    e.neighbour = points_.neighbour[p];
     e.patch = p;
     find_longest_edge(e);
   }
+  points_.corners = {}, points_.neighbour = {}, points_.E = {};
   // Both must agree that they meet, or halving would wait for one that never comes.
-  const std::vector<Element> before = elements_;
+  std::vector<std::pair<std::uint32_t, std::size_t>> alone;
   for (std::uint32_t p = 0; p < elements_.size(); ++p)
     for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& q = elements_[p].neighbour[k];
+      const std::uint32_t q = elements_[p].neighbour[k];
       if (q == kNone) continue;
-      const std::size_t back = edge_towards(q, before[p].vertex[(k + 1) % 3], before[p].vertex[k]);
-      if (back == 3 || before[q].neighbour[back] != p) q = kNone;
+      const std::size_t back = edge_towards(q, elements_[p].vertex[(k + 1) % 3], elements_[p].vertex[k]);
+      if (back == 3 || elements_[q].neighbour[back] != p) alone.emplace_back(p, k);
     }
+  for (const auto& [p, k] : alone) elements_[p].neighbour[k] = kNone;
 }
 
 std::array<Vec3, 3> ElementMesh::corner_positions(std::size_t e) const {
@@ -242,11 +239,11 @@ PatchSet ElementMesh::leaf_patches() const {
   return out;
 }
 
-VertexLightmap ElementMesh::leaf_lightmap() const {
+VertexLightmap ElementMesh::leaf_lightmap() && {
   const std::vector<std::uint32_t> leaf = leaves();
   std::vector<std::uint32_t> number(elements_.size(), kNone);
   for (std::uint32_t i = 0; i < leaf.size(); ++i) number[leaf[i]] = i;
-  VertexLightmap map = points_;
+  VertexLightmap map = std::move(points_);
   map.corners.resize(leaf.size());
   map.neighbour.resize(leaf.size());
   for (std::uint32_t i = 0; i < leaf.size(); ++i) {

@@ -18,8 +18,8 @@ namespace clerestory {
 /// 1984.
 class ElementMesh {
  public:
-  /// patches  not halved yet; map: their lightmap, of which E is not used. Both outlive the mesh.
-  ElementMesh(const PatchSet& patches, const VertexLightmap& map);
+  /// patches  not halved yet; they outlive the mesh. map: their lightmap, of which E is not used.
+  ElementMesh(const PatchSet& patches, VertexLightmap map);
 
   /// A leaf or a halved one. Elements 0 .. patch_count() - 1 are the patches; halves are appended in pairs.
   struct Element {
@@ -53,8 +53,8 @@ class ElementMesh {
   std::vector<std::uint32_t> leaves() const;
   /// The leaves as patches in that order, each on a triangle of its own; `splits` tells rays which leaf they meet.
   PatchSet leaf_patches() const;
-  /// Lightmap of leaf_patches(); E is sized P x channels and zero.
-  VertexLightmap leaf_lightmap() const;
+  /// Lightmap of leaf_patches(), made of the mesh's own points; E is sized P x channels and zero.
+  VertexLightmap leaf_lightmap() &&;
 
  private:
   void find_longest_edge(Element& e) const;
@@ -67,8 +67,8 @@ class ElementMesh {
   std::vector<Element> elements_;
   std::vector<Vec3> vertices_;
   VertexLightmap points_;  ///< position and samples only
-  std::vector<std::array<std::uint32_t, 2>> ends_;
   std::size_t first_middle_ = 0, leaf_count_ = 0;
+  std::vector<std::array<std::uint32_t, 2>> ends_;
 };
 
 }  // namespace clerestory

@@ -130,6 +130,14 @@ class Tracer {
     write(receiver, out);
   }
 
+  std::vector<BundleRay> bundle(const Receiver& receiver) {
+    look_at(receiver);
+    send_rays();
+    std::vector<BundleRay> out;
+    for (std::size_t k = 0; k < rays_.size(); ++k) out.push_back({rays_[k], hits_[k]});
+    return out;
+  }
+
  private:
   struct Member {
     std::uint32_t patch;
@@ -176,8 +184,20 @@ class Tracer {
 
   std::uint16_t part(const Vec3& d) const { return hands_down_ ? part_of_sphere(d) : std::uint16_t{0}; }
 
-  void send_bundle(Transport& transport, std::span<std::uint32_t> neighbours) {
+  void send_rays() {
     const Problem& problem = light_.problem;
+    const Frame frame(members_[0].normal);
+    for (std::size_t k = 0; k < rays_.size(); ++k) {
+      auto u = net_(k, key_);
+      from_[k] = &pick(u[2]);
+      const Vec3 normal = from_[k]->normal;
+      rays_[k] = {point_on_triangle(from_[k]->corners, u[2], u[3]) + normal * problem.rays.lift(),
+                  cosine_direction(members_.size() > 1 ? Frame(normal) : frame, u[0], u[1])};
+    }
+    problem.rays.first_hits(patches_, rays_, hits_);
+  }
+
+  void send_bundle(Transport& transport, std::span<std::uint32_t> neighbours) {
     const int R = options_.bundle_rays;
     const bool pairs = light_.lamps.has_emitters() && options_.lamp_rays > 0;
     const std::size_t n = members_.size();
@@ -185,15 +205,7 @@ class Tracer {
     std::array<Spectrum, kMostMembers> sky{};
     share[0] = 1;
     std::size_t met = 0;
-    const Frame frame(members_[0].normal);
-    for (std::size_t k = 0; k < rays_.size(); ++k) {
-      auto u = net_(k, key_);
-      from_[k] = &pick(u[2]);
-      const Vec3 normal = from_[k]->normal;
-      rays_[k] = {point_on_triangle(from_[k]->corners, u[2], u[3]) + normal * problem.rays.lift(),
-                  cosine_direction(n > 1 ? Frame(normal) : frame, u[0], u[1])};
-    }
-    problem.rays.first_hits(patches_, rays_, hits_);
+    send_rays();
     for (std::size_t k = 0; k < rays_.size(); ++k) {
       const Hit& hit = hits_[k];
       const Member& from = *from_[k];
@@ -465,6 +477,12 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs);
   find_spaces(transport, patches, tree, receivers, neighbours);
   return transport;
+}
+
+std::vector<BundleRay> trace_bundle(const Illumination& light, const ElementTree& tree, const Receiver& receiver,
+                                    const LinkOptions& options) {
+  const Net net(options.bundle_rays, stream_key(options.seed, kBundle));
+  return Tracer(light, tree, net, nullptr, {}, options).bundle(receiver);
 }
 
 }  // namespace clerestory

@@ -2,6 +2,7 @@
 // Links by rays: a bundle from every receiver, and pairs with bright sources.
 
 #include <cstdint>
+#include <vector>
 
 #include "solver/hierarchy/links.h"
 #include "solver/lights/illumination.h"
@@ -40,5 +41,13 @@ struct LinkOptions {
 /// Cost   R + L rays for each receiver; 8 bytes a link.
 Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const Field& E,
                       const LinkOptions& options, const Monitor& monitor = {});
+
+struct BundleRay {
+  Ray ray;
+  Hit hit;
+};
+/// The rays that trace_links() with the same arguments sent from this receiver, once more.
+std::vector<BundleRay> trace_bundle(const Illumination& light, const ElementTree& tree, const Receiver& receiver,
+                                    const LinkOptions& options);
 
 }  // namespace clerestory

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/model/hierarchy_debug.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
 #include "solver/problem.h"
@@ -15,18 +16,20 @@ struct HierarchyOptions {
   enum class Oracle { error, bf };
   Oracle oracle = Oracle::error;  ///< bf: classic refinement by flux at stake, to compare
   int bundle_rays = 512;          ///< from each receiver
-  int lamp_rays = 256;           ///< pairs with bright sources from each receiver, a multiple of 16
+  int lamp_rays = 256;            ///< pairs with bright sources from each receiver, a multiple of 16
   double tolerance = 0.1;         ///< of an element's irradiance: it is halved while light varies more inside of it [1]
   double shortest_edge = 0;       ///< elements are not halved below this [m]
   double residual = 1e-6;         ///< stop when the flux not yet in balance / emitted flux is below this [1]
   std::size_t most_elements = 1'000'000;  ///< no more are made by halving
   std::uint64_t seed = 1;
+  HierarchyDebug* debug = nullptr;  ///< filled with the last round that was done
 };
 
 /// The leaf elements, and the light on them.
 struct HierarchicalSolution {
-  PatchSet elements;   ///< ElementMesh::leaf_patches()
-  Field small_lights;  ///< N x channels, direct irradiance of sun and luminaires on each leaf [W/m2]; part of solution.E
+  PatchSet elements;  ///< ElementMesh::leaf_patches()
+  Field
+      small_lights;  ///< N x channels, direct irradiance of sun and luminaires on each leaf [W/m2]; part of solution.E
   Solution solution;
 };
 

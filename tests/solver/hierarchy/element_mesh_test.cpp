@@ -42,7 +42,7 @@ class GradedRoom : public ::testing::Test {
     // A corner of the box on the floor, where three surfaces meet and the floor is parted.
     halve_around(mesh, Vec3{1, 1, 0} - room.patches.origin, 7);
     leaves = mesh.leaf_patches();
-    map = mesh.leaf_lightmap();
+    map = std::move(mesh).leaf_lightmap();
   }
   MeshedRoom room;
   ElementMesh mesh;

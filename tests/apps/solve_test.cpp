@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <numeric>
 #include <thread>
 
@@ -151,6 +152,65 @@ TEST(Solve, TheHierarchyIsCountedAndEveryStageTimed) {
     EXPECT_GE(time.get<double>(), stage == "direct" ? 0 : 1e-6) << stage;  // no sun and no luminaires here
   }
   EXPECT_NEAR(sum, seconds["total"], 0.05 + 0.05 * sum);
+}
+
+TEST(Solve, TheDebugOutputShowsElementsLinksRaysAndErrors) {
+  const TempFolder folder;
+  const std::string shown = folder / "a/debug";
+  const ProgramRun run = solve(shipped_scene("cornell_box.json"), folder / "out.vtp",
+                               {"--accuracy", "draft", "--debug-output", shown, "--report", folder / "report.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const ResultFile hierarchy = read_result(shown + "/hierarchy.vtp"), links = read_result(shown + "/links.vtp"),
+                   rays = read_result(shown + "/rays.vtp"), error = read_result(shown + "/error.vtp");
+  for (const ResultFile* file : {&hierarchy, &links, &rays, &error}) {
+    expect_all_finite(file->of_cells);
+    for (const auto& [name, array] : file->of_cells)
+      EXPECT_EQ(array.values.size(), file->triangles.size() + file->lines.size()) << name;
+  }
+
+  // All links of all receivers are those the report counts; the ones shown are of the receiver that has the most.
+  const auto& receiver = hierarchy.of_cells.at("receiver").values;
+  const auto& links_of = hierarchy.of_cells.at("links").values;
+  std::map<double, double> by_receiver;
+  for (std::size_t i = 0; i < receiver.size(); ++i) by_receiver[receiver[i]] = links_of[i];
+  double all = 0, most = 0;
+  for (const auto& [number, count] : by_receiver) all += count, most = std::max(most, count);
+  EXPECT_EQ(all, Json::parse(read_text(folder / "report.json")).at("counts").at("links").get<double>());
+  ASSERT_EQ(static_cast<double>(links.lines.size()), most);
+  ASSERT_GT(links.lines.size(), 1u);
+
+  // Weights are shares of the directions around the receiver, in float.
+  const auto& weight = links.of_cells.at("weight").values;
+  EXPECT_GT(*std::min_element(weight.begin(), weight.end()), 0);
+  EXPECT_LE(std::accumulate(weight.begin(), weight.end(), 0.0), 1 + 1e-3);
+  EXPECT_GT(*std::max_element(links.of_cells.at("source_radiosity").values.begin(),
+                              links.of_cells.at("source_radiosity").values.end()),
+            0);
+
+  // The box is open at its front only: most rays land on what is lit.
+  ASSERT_EQ(rays.of_cells.count("landed_radiosity"), 1u);
+  const auto& landed = rays.of_cells.at("landed_radiosity").values;
+  ASSERT_GE(landed.size(), 16u);
+  EXPECT_GT(std::count_if(landed.begin(), landed.end(), [](double B) { return B > 0; }), std::ssize(landed) / 4);
+
+  EXPECT_EQ(error.triangles.size(), read_result(folder / "out.vtp").triangles.size());
+  for (const char* name : {"interpolation_error", "noise"})
+    for (const double value : error.of_cells.at(name).values) ASSERT_GE(value, 0) << name;
+}
+
+TEST(Solve, TheDebugOutputIsRefusedWhereItCannotBe) {
+  const TempFolder folder;
+  const std::string scene = shipped_scene("cornell_box.json"), out = folder / "out.vtp";
+  const ProgramRun other = solve(scene, out, {"--method", "progressive", "--debug-output", folder / "debug"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("progressive"), std::string::npos) << other.err;
+  std::ofstream(folder / "file") << "no folder";
+  const ProgramRun blocked = solve(scene, out, {"--debug-output", folder / "file/debug"});
+  EXPECT_EQ(blocked.exit_code, 3);
+  EXPECT_NE(blocked.err.find("choose another place"), std::string::npos) << blocked.err;
+  const ProgramRun twice = solve(scene, folder / "links.vtp", {"--debug-output", folder / "."});
+  EXPECT_EQ(twice.exit_code, 3);
+  EXPECT_NE(twice.err.find("--debug-output"), std::string::npos) << twice.err;
 }
 
 TEST(Solve, ThreadsNeverChangeABit) {

@@ -55,8 +55,12 @@ ResultFile read_result(const std::string& file) {
   vtkNew<vtkIdList> corners;
   for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i) {
     data->GetCellPoints(i, corners);
-    if (corners->GetNumberOfIds() != 3) throw std::runtime_error(file + ": a cell is no triangle");
     const auto corner = [&](vtkIdType k) { return static_cast<std::size_t>(corners->GetId(k)); };
+    if (corners->GetNumberOfIds() == 2) {
+      result.lines.push_back({corner(0), corner(1)});
+      continue;
+    }
+    if (corners->GetNumberOfIds() != 3) throw std::runtime_error(file + ": a cell is neither a triangle nor a line");
     result.triangles.push_back({corner(0), corner(1), corner(2)});
   }
   result.of_cells = numbers_of(data->GetCellData());

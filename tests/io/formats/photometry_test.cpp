@@ -68,6 +68,16 @@ TEST(Photometry, EveryGoodSampleHasItsFluxAndPeakAndEveryBrokenOneIsRefusedWithI
   }
 }
 
+TEST(Photometry, LuminairesThatAreShippedGiveTheFluxTheirTableSays) {
+  const std::filesystem::path folder = std::filesystem::path(CLERESTORY_SOURCE_DIR) / "data" / "luminaires";
+  for (const auto& [name, flux] :
+       {std::pair{"classroom_linear.ies", 4200.0}, {"downlight.ies", 1500.0}, {"wallwasher.ies", 2000.0}}) {
+    std::vector<std::string> warnings;
+    EXPECT_NEAR(read_photometry(folder / name, warnings).flux, flux, 1e-4 * flux) << name;
+    EXPECT_TRUE(warnings.empty()) << warnings.front();
+  }
+}
+
 TEST(Photometry, SymmetryIsTakenFromTheAngles) {
   if (!std::filesystem::exists(kSamples)) GTEST_SKIP() << "no ../shared/data beside this checkout";
   EXPECT_EQ(read("synthetic/asymmetric_360.ies").symmetry, WebSymmetry::none);

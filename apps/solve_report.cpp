@@ -24,6 +24,7 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
     return std::ranges::none_of(s.patches.materials, [&](const Material& m) { return m.kind == kind; });
   };
   if (none_is(MaterialKind::glass)) out.push_back("glass: the scene has none");
+  if (none_is(MaterialKind::mirror)) out.push_back("mirrors: the scene has none");
   if (none_is(MaterialKind::diffuser)) out.push_back("diffusers: the scene has none");
   if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
   if (s.lit_sides.lamp_interiors)

@@ -45,7 +45,7 @@ Covering::Covering(const FaceComplex& complex, const PlaneGroup& group, std::spa
   }
   for (Piece& p : pieces_) {
     const Material& m = materials_[p.material];
-    const bool preferred = m.emits() || m.passes_light();
+    const bool preferred = m.emits() || m.is_sheet();
     p.rank = area[{p.material.value, p.surface.value, p.faces_up}] * (preferred ? 0.5 : 1);
   }
   if (pieces_.size() > 1) tree_.emplace(pieces_.size(), StoredBoxes{std::move(boxes)});
@@ -88,8 +88,8 @@ std::optional<Covering::Found> Covering::at(const Point2& p, double reach) const
   const Piece* best = winner(covering, true, true);
   Found found;
   found.faces = static_cast<int>(covering.size());
-  if (!materials_[best->material].passes_light())
-    std::erase_if(covering, [&](const Piece* q) { return materials_[q->material].passes_light(); });
+  if (!materials_[best->material].is_sheet())
+    std::erase_if(covering, [&](const Piece* q) { return materials_[q->material].is_sheet(); });
   else
     covering.assign(1, best);
   const Piece *above = winner(covering, true, false), *below = winner(covering, false, false);

@@ -14,10 +14,10 @@ namespace clerestory {
 /// Knows the faces of one plane group by place.
 ///
 /// Where faces cover each other, each side of the plane shows one of them, taken in this order:
-///   glass or a diffuser that wins by size owns both sides; else a face that acts on this side (its front, or
+///   glass, a diffuser or a mirror that wins by size owns both sides; else a face that acts on this side (its front, or
 ///   two-sided) before one whose black back is there; a front before a back; the material that covers less of the
-///   plane, a source counting half, before one that covers more. So a pane or a door is cut out of its wall on both sides, a wall stored twice
-///   with opposite normals shows either front, and the order of the file does not matter.
+///   plane, a source counting half, before one that covers more. So a pane or a door is cut out of its wall on both
+///   sides, a wall stored twice with opposite normals shows either front, and the order of the file does not matter.
 class Covering {
  public:
   Covering(const FaceComplex& complex, const PlaneGroup& group, std::span<const Material> materials);

@@ -32,10 +32,10 @@ class Bundle {
       const Hit& hit = hits[k];
       values[k] = Spectrum(0.0);
       if (hit.escaped()) {
-        values[k] = light_.sky(directions[k]) * std::numbers::pi * hit.transmittance;
+        values[k] = light_.sky(hit.direction(rays[k])) * std::numbers::pi * hit.transmittance;
       } else if (hit.patch.valid()) {
         Spectrum back = light_.lamps.glow()[hit.patch];
-        if (lamp_rays_ > 0 && light_.lamps.is_explicit(hit.patch)) {
+        if (lamp_rays_ > 0 && !hit.reflected && light_.lamps.is_explicit(hit.patch)) {
           const double cos_patch = -dot(problem.patches.normal[hit.patch], directions[k]);
           const double bundle = density[k] * dot(frame_.n, directions[k]) / std::numbers::pi;
           const double lamp = lamp_rays_ * light_.lamps.density(hit.patch, p_, frame_.n, hit.distance, cos_patch, true);

@@ -83,6 +83,7 @@ Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, in
     if (spaces.is_settled(hit.patch)) return seen;
   }
   for (const Sun& sun : problem.lights.suns) {
+    if (sun.mirror != kNoMirror) continue;  // the space is told by rays that mirrors turn
     for (int k = 0; k < 16 && !seen.sun; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
       const Vec3 d = direction_to_sun(sun, u[2], u[3]);
@@ -113,6 +114,7 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
   }
   Found found;
   const auto look_at = [&](const auto& lamp) {
+    if (lamp.mirror != kNoMirror) return;
     SegmentPacket segments;
     unsigned facing = 0;
     for (int lane = 0; lane < 16; ++lane) {
@@ -147,8 +149,9 @@ void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) 
         const auto u = sobol4(static_cast<std::uint32_t>(k), key);
         const Vec3 d = sphere_direction(u[0], u[1]);
         const Vec3 start = position + d * (20 * problem.rays.lift());
-        const bool dark =
-            with_lamp(problem.lights, number, [&](const auto& lamp) { return intensity(lamp, d).is_black(); });
+        const bool dark = with_lamp(problem.lights, number, [&](const auto& lamp) {
+          return lamp.mirror != kNoMirror || intensity(lamp, d).is_black();
+        });
         if (!dark) met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
       }
     }

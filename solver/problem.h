@@ -17,4 +17,10 @@ struct Problem {
 /// Lights moved into the local frame of the patches.
 Lights to_local_frame(const Lights& lights, const Vec3& origin);
 
+/// The same with an image of each luminaire and sun behind each plane of mirrors, for light that takes one mirror on
+/// its way; more than one, and curved mirrors finer than 64 planes, are not found from lamps and suns.
+///
+/// local  in the patches' frame. Nothing is added without mirrors.
+Lights with_mirror_images(Lights local, const RayScene& rays);
+
 }  // namespace clerestory

@@ -10,6 +10,7 @@
 #include "solver/methods/jacobi.h"
 #include "solver/methods/path.h"
 #include "solver/methods/progressive.h"
+#include "solver/model/error.h"
 #include "solver/model/units.h"
 #include "solver/noisy_patches.h"
 
@@ -51,8 +52,13 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
     matrix_options.memory_limit = options.memory_limit > rest ? options.memory_limit - rest : 1;
   }
   // Before anything is computed: a matrix that does not fit is no news to wait for.
-  if (options.method == Method::gauss_seidel || options.method == Method::jacobi)
+  if (options.method == Method::gauss_seidel || options.method == Method::jacobi) {
     require_matrix_fits(problem.patches.patch_count(), matrix_options);
+    if (problem.rays.has_mirrors()) {
+      throw InputError(
+          "the scene has mirrors, which form factors do not see; use --method hierarchical, progressive or path");
+    }
+  }
   const Illumination light(problem);
   const int more = 1 << options.tighten;
   const DirectOptions direct_options{.lamp_rays = by_accuracy(options.accuracy, 16, 16, 64),

@@ -145,7 +145,7 @@ std::optional<Solved> solve_scene(const Scene& scene, Settings settings, std::sp
   std::optional<Prepared> prepared = prepare(scene, settings, rays, seconds, console, monitor);
   if (!prepared) return {};
   auto& [patches, repairs, lit_sides, lightmap] = *prepared;
-  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  const Lights lights = with_mirror_images(to_local_frame(scene.lights, patches.origin), *rays);
   const Problem problem{patches, *rays, lights};
   warn_about_places(problem, scene, sensors, console);
 

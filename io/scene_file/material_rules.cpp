@@ -53,11 +53,6 @@ void read_emission(const JsonObject& object, Material& material, ChannelCount& c
 Material read_material(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
   constexpr std::string_view kTypes[] = {"diffuse", "glass", "diffuser", "mirror"};
   const std::string type = object.choice("type", kTypes).value_or("diffuse");
-  if (type == "mirror") {
-    throw InputError(
-        text(object.place("type"),
-             " 'mirror' is not available in this version; use a diffuse material with the mirror's reflectance"));
-  }
   Material material;
   material.reflectance = Spectrum(0.5);
   if (const auto colour = object.colour("reflectance", kReflectance)) {
@@ -104,6 +99,14 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
     }
   } else if (transmittance) {
     throw InputError(text(object.place("transmittance"), " needs \"type\": \"glass\" or \"diffuser\""));
+  }
+  if (type == "mirror") {
+    if (!object.has("reflectance"))
+      throw InputError(text(object.place("reflectance"), " is missing; a mirror needs it, 0.9 for a common one"));
+    if (material.emits())
+      throw InputError(text(object.where(), ": a mirror does not emit; give the light to another surface"));
+    if (material.sides == 1) throw InputError(text(object.place("sides"), " = 1: a mirror acts on both of its sides"));
+    material.kind = MaterialKind::mirror;
   }
   return material;
 }

@@ -66,10 +66,11 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       const Vec3 x = point_on_triangle(parts[s], u[2], u[3]) + lift;
       const Hit hit = problem.rays.first_hit(patches, {x, d});
       value[s] = 0;
-      if (hit.escaped()) value[s] = std::numbers::pi * luminous_mean(light.sky(d) * hit.transmittance);
+      if (hit.escaped())
+        value[s] = std::numbers::pi * luminous_mean(light.sky(hit.direction({x, d})) * hit.transmittance);
       if (!hit.patch.valid()) continue;
       double weight = 1;
-      if (pairs > 0 && light.lamps.is_explicit(hit.patch)) {
+      if (pairs > 0 && !hit.reflected && light.lamps.is_explicit(hit.patch)) {
         const double cos_p = kDirections * dot(normal, d) / std::numbers::pi;
         const double cos_q = -dot(patches.normal[hit.patch], d);
         weight = cos_p / (cos_p + pairs * light.lamps.density(hit.patch, x, normal, hit.distance, cos_q, true));

@@ -213,11 +213,11 @@ class Tracer {
       const double passes = luminous_mean(hit.transmittance);
       if (n > 1) find_shares(d, std::span(share).first(n));
       if (hit.escaped()) {
-        const Spectrum from_sky = light_.sky(d) * std::numbers::pi * hit.transmittance;
+        const Spectrum from_sky = light_.sky(hit.direction(rays_[k])) * std::numbers::pi * hit.transmittance;
         for (std::size_t m = 0; m < n; ++m) sky[m] += from_sky * share[m], escape[m] += share[m] * passes;
       } else if (hit.patch.valid()) {
         if (met < neighbours.size()) neighbours[met++] = hit.patch.value;
-        const bool bright = pairs && light_.lamps.is_explicit(hit.patch);
+        const bool bright = pairs && !hit.reflected && light_.lamps.is_explicit(hit.patch);
         double weight = 1.0 / R;
         if (bright) {
           const double cos_p = dot(from.normal, d) / std::numbers::pi;

@@ -16,6 +16,13 @@ namespace {
 
 enum StreamKind : std::uint64_t { kLampPoints = 0x11, kSkyRays = 0x12, kLampRays = 0x13 };
 
+/// What a point of a patch is shown of a light.
+struct Shown {
+  Vec3 end;             ///< of the shadow ray
+  Spectrum irradiance;  ///< when nothing blocks
+  std::uint32_t mirror = kNoMirror;
+};
+
 /// Adds to E_i the mean over points of patch i of the irradiance that open_at(point) gives where a segment to
 /// end_for(point, u, v) is free.
 class PatchSampler {
@@ -48,11 +55,11 @@ class PatchSampler {
   }
 
   template <class Open, class End>
-  Spectrum mean(const Open& open_at, const End& end_for, bool wide = false) const {
+  Spectrum mean(std::uint32_t mirror, const Open& open_at, const End& end_for, bool wide = false) const {
     return mean_of_choice(
         [&](const Vec3& p, double u, double v, const auto&) {
           const Vec3 end = end_for(p, u, v);
-          return std::pair(end, open_at(p, end));
+          return Shown{end, open_at(p, end), mirror};
         },
         wide);
   }
@@ -91,11 +98,18 @@ class PatchSampler {
         const auto u = sobol4(static_cast<std::uint32_t>(first + lane), key);
         from[k] = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
         const auto pick = [&] { return sobol4(static_cast<std::uint32_t>(first + lane), key + 1)[0]; };
-        const auto [end, irradiance] = light(from[k], u[2], u[3], pick);
-        to[k] = short_of(end, from[k], lift);
-        open[k] = irradiance;
+        const Shown shown = light(from[k], u[2], u[3], pick);
+        to[k] = short_of(shown.end, from[k], lift);
+        open[k] = shown.irradiance;
         segments.set(lane, from[k], to[k]);
-        if (!open[k].is_black()) facing |= 1u << lane;
+        if (open[k].is_black()) continue;
+        if (shown.mirror == kNoMirror) {
+          facing |= 1u << lane;
+          continue;
+        }
+        const Spectrum passes = problem_.rays.transmittance_by_mirror(from[k], to[k], shown.mirror);
+        tally.sum += open[k] * passes;
+        tally.facing += 1, tally.visible += !passes.is_black();
       }
       const unsigned seen = problem_.rays.visible16(segments, static_cast<std::uint16_t>(facing));
       tally.facing += std::popcount(facing), tally.visible += std::popcount(seen);
@@ -118,9 +132,10 @@ template <class Lamp>
 Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
   if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > -reach(lamp); }))
     return Spectrum(0.0);
-  return patch.mean([&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
-                    [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); },
-                    opening_rays(lamp, patch.centre()) > 4);
+  return patch.mean(
+      lamp.mirror, [&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
+      [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); },
+      opening_rays(lamp, patch.centre()) > 4);
 }
 
 /// The luminaires over one patch. Those that give much of its light are looked at one by one; the others, however many,
@@ -172,7 +187,7 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
                    const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
                    return with_lamp(lights, over[k].number, [&](const auto& lamp) {
                      const Vec3 q = light_point(lamp, p, u, v);
-                     return std::pair(q, open_irradiance(lamp, q, p, patch.normal()) / probability);
+                     return Shown{q, open_irradiance(lamp, q, p, patch.normal()) / probability, lamp.mirror};
                    });
                  },
                  wide);
@@ -181,6 +196,7 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
 Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {
   if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
   return patch.mean(
+      sun.mirror,
       [&](const Vec3& p, const Vec3& end) {
         return sun.normal_irradiance * std::max(0.0, dot(patch.normal(), end - p) / far_away);
       },
@@ -198,7 +214,7 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
     const Ray ray{point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
                   cosine_direction(frame, u[0], u[1])};
     const Hit hit = problem.rays.first_hit(problem.patches, ray);
-    if (hit.escaped()) sum += light.sky(ray.direction) * hit.transmittance;
+    if (hit.escaped()) sum += light.sky(hit.direction(ray)) * hit.transmittance;
   }
   return sum * (std::numbers::pi / options.sky_rays);
 }
@@ -210,6 +226,7 @@ struct LampBalance {
 
 template <class Lamp>
 LampBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t rays, std::uint64_t key) {
+  if (lamp.mirror != kNoMirror) return {};  // mirrors turn the lamp's own rays
   double sent = 0, arrived = 0, escaped = 0;
   for (std::uint32_t k = 0; k < rays; ++k) {
     const auto u = sobol4(k, key);

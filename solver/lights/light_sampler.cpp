@@ -147,7 +147,7 @@ LightSample LightSampler::on_lamp(const Vec3& p, const Vec3& n, double pick, dou
   return with_lamp(problem_.lights, choice.light, [&](const auto& lamp) -> LightSample {
     const Vec3 q = light_point(lamp, p, u, v);
     const double probability = share * choice.probability;
-    return {short_of(q, p, problem_.rays.lift()), open_irradiance(lamp, q, p, n) / probability, 0, {}};
+    return {short_of(q, p, problem_.rays.lift()), open_irradiance(lamp, q, p, n) / probability, 0, {}, lamp.mirror};
   });
 }
 
@@ -165,7 +165,7 @@ LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, doub
   const Vec3 d = direction_to_sun(*sun, u, v);
   const double cos_n = dot(n, d), probability = share * power * cross_section(problem_.rays) / suns_power_;
   if (!(cos_n > 0)) return {};
-  return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}};
+  return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}, sun->mirror};
 }
 
 double LightSampler::density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
@@ -196,8 +196,12 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
     }
     queued = 0;
   };
-  const auto look = [&](const Vec3& to, const Spectrum& irradiance) {
+  const auto look = [&](const Vec3& to, const Spectrum& irradiance, std::uint32_t mirror) {
     if (irradiance.is_black()) return;
+    if (mirror != kNoMirror) {
+      E += irradiance * rays.transmittance_by_mirror(p, to, mirror);
+      return;
+    }
     segments.set(static_cast<int>(queued), p, to);
     end[queued] = to, open[queued] = irradiance;
     if (++queued == 16) flush();
@@ -208,13 +212,13 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
     with_lamp(problem_.lights, number, [&](const auto& lamp) {
       const int count = opening_rays(lamp, p);
       if (count == 1) {
-        look(short_of(lamp.position, p, lift), open_irradiance(lamp, p, n));
+        look(short_of(lamp.position, p, lift), open_irradiance(lamp, p, n), lamp.mirror);
         return;
       }
       for (int k = 0; k < count; ++k) {
         const OpeningPlace at = opening_place(lamp, k, count);
         const Vec3 q = light_point(lamp, p, at.u, at.v);
-        look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight);
+        look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight, lamp.mirror);
       }
     });
   }
@@ -223,7 +227,7 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
     for (int k = 0; k < sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
-      look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays));
+      look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays), sun.mirror);
     }
     flush();
   }

@@ -33,7 +33,8 @@ SkyRadiance::SkyRadiance(const Lights& lights) {
       break;
   }
   Spectrum horizontal = sky.horizontal_irradiance;
-  for (const Sun& sun : lights.suns) horizontal += sun.normal_irradiance * std::max(0.0, sun.direction.z);
+  for (const Sun& sun : lights.suns)
+    if (sun.mirror == kNoMirror) horizontal += sun.normal_irradiance * std::max(0.0, sun.direction.z);
   ground_ = horizontal * (sky.ground_reflectance / pi);
 }
 

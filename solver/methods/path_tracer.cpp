@@ -35,7 +35,10 @@ Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, cons
     weight = s.density / (s.density + bundle);
   }
   ++rays;
-  return s.irradiance * light.problem.rays.transmittance(p, s.end) * weight;
+  const RayScene& scene = light.problem.rays;
+  const bool by_mirror = s.mirror != kNoMirror;
+  return s.irradiance * weight *
+         (by_mirror ? scene.transmittance_by_mirror(p, s.end, s.mirror) : scene.transmittance(p, s.end));
 }
 
 /// Of the light that patch q scatters, the share that leaves its other side; below 1 where it reflects.
@@ -67,12 +70,12 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     const Hit hit = problem.rays.first_hit(patches, {p, d});
     ++rays;
     throughput *= hit.transmittance;
-    if (hit.escaped()) return E + throughput * light.sky(d) * std::numbers::pi;
+    if (hit.escaped()) return E + throughput * light.sky(hit.direction({p, d})) * std::numbers::pi;
     if (!hit.patch.valid()) return E;
     const Spectrum M = patches.M[hit.patch];
     if (!M.is_black()) {
       double weight = 1;
-      if (light.lamps.is_explicit(hit.patch)) {
+      if (!hit.reflected && light.lamps.is_explicit(hit.patch)) {
         const double bundle = dot(n, d) / std::numbers::pi;
         const double cos_patch = -dot(patches.normal[hit.patch], d);
         const double lamp = light.lamps.density(hit.patch, p, n, hit.distance, cos_patch, false);
@@ -84,7 +87,7 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     const bool through = passes > 0 && random.uniform() < passes;
     throughput *= through ? patches.tau[hit.patch] / passes : patches.rho[hit.patch] / (1 - passes);
     if (throughput.is_black()) return E;
-    p = p + d * static_cast<double>(hit.distance);
+    p = hit.position({p, d});
     n = through ? -patches.normal[hit.patch] : patches.normal[hit.patch];
     p += n * problem.rays.lift();
     choice = {random.uniform(), random.uniform(), random.uniform()};

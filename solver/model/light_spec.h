@@ -1,6 +1,7 @@
 #pragma once
 // Light that does not come from surfaces of the model.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,12 +15,15 @@
 
 namespace clerestory {
 
+inline constexpr std::uint32_t kNoMirror = 0xffffffff;
+
 /// Point source of equal intensity in all directions.
 struct PointLuminaire {
   std::string name;
-  Vec3 position;        ///< [m]
-  Spectrum power;       ///< total flux [W]
-  std::string group{};  ///< luminaires that are switched and dimmed together; may be empty
+  Vec3 position;                     ///< [m]
+  Spectrum power;                    ///< total flux [W]
+  std::string group{};               ///< luminaires that are switched and dimmed together; may be empty
+  std::uint32_t mirror = kNoMirror;  ///< of an image: the mirror (RayScene::mirrors) that shows it
 };
 
 /// glTF KHR_lights_punctual spot: intensity falls smoothly from the inner to the outer half-angle.
@@ -29,6 +33,7 @@ struct SpotLuminaire {
   Vec3 direction;                           ///< unit, away from the lamp
   Spectrum intensity;                       ///< on the axis [W/sr]
   double inner_angle = 0, outer_angle = 0;  ///< half-angles [rad]
+  std::uint32_t mirror = kNoMirror;         ///< as of PointLuminaire
 };
 
 /// Luminaire of a photometric file. Nearer than ten times its opening's largest length its light comes from the whole
@@ -38,8 +43,9 @@ struct WebLuminaire {
   std::shared_ptr<const PhotometricWeb> web;  ///< many luminaires share one
   Vec3 position;                              ///< of the photometric centre [m]
   LuminaireAxes axes;
-  Spectrum scale;       ///< radiant intensity for each candela of the web, dimming included [W/sr / cd]
-  std::string group{};  ///< as of PointLuminaire
+  Spectrum scale;                    ///< radiant intensity for each candela of the web, dimming included [W/sr / cd]
+  std::string group{};               ///< as of PointLuminaire
+  std::uint32_t mirror = kNoMirror;  ///< as of PointLuminaire
 };
 
 enum class SkyModel { uniform, cie_overcast, cie_clear, cie_general, perez, image };
@@ -57,8 +63,9 @@ struct Sky {
 
 /// Sun: a disc of 0.533 degrees of uniform radiance.
 struct Sun {
-  Vec3 direction;              ///< unit, to the sun
-  Spectrum normal_irradiance;  ///< on a plane that faces the sun [W/m2]
+  Vec3 direction;                    ///< unit, to the sun
+  Spectrum normal_irradiance;        ///< on a plane that faces the sun [W/m2]
+  std::uint32_t mirror = kNoMirror;  ///< as of PointLuminaire
 };
 
 struct Lights {

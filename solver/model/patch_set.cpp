@@ -63,7 +63,7 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   p.behind.clear();
   p.side_patch.assign(p.triangle_count(), {PatchId{}, PatchId{}});
   for (std::size_t t = 0; t < p.triangle_count(); ++t) {
-    if (p.is_glass(TriangleId{t})) continue;
+    if (p.is_glass(TriangleId{t}) || p.is_mirror(TriangleId{t})) continue;
     const auto& c = p.corners[t];
     const Vec3 a = p.vertices[c[0]];
     const Vec3 scaled_normal = cross(p.vertices[c[1]] - a, p.vertices[c[2]] - a);

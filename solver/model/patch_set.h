@@ -26,8 +26,8 @@ struct SplitNode {
   std::uint8_t edge = 0;
 };
 
-/// A triangle always blocks light (glass: passes its share); its sides take part in transport as patches.
-/// All coordinates are relative to `origin`, so that float rays lose nothing in georeferenced models.
+/// A triangle always blocks light (glass: passes its share; a mirror: sends it on); its sides take part in transport as
+/// patches. All coordinates are relative to `origin`, so that float rays lose nothing in georeferenced models.
 ///
 /// Patches may be finer than the triangles that rays meet: then triangle i carries patch i alone, on one of its sides,
 /// and `splits` tells which part of a ray's triangle is which patch (solver/hierarchy/element_mesh.h).
@@ -72,6 +72,7 @@ struct PatchSet {
   SurfaceId surface(PatchId p) const { return side_surface[triangle[p]][side[p]]; }
   bool is_glass(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::glass; }
   bool is_diffuser(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::diffuser; }
+  bool is_mirror(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::mirror; }
   /// The patch that a ray meets in its triangle t (T counted before splits), at barycentric weights u, v of corners
   /// 1, 2.
   PatchId patch_at(TriangleId t, Side side, double u, double v) const;
@@ -94,9 +95,9 @@ struct PatchSet {
 };
 
 /// (Re)builds the patch arrays from the triangles: one patch for each side with wanted[2 * t + side], in that order;
-/// glass has none, and a diffuser's sides go together. Area, normal, rho and M follow from the materials; a material's
-/// total power is shared over the area of its emitting patches; the back of a one-sided material is black, unless it is
-/// the front of a joined face.
+/// glass and mirrors have none, and a diffuser's sides go together. Area, normal, rho and M follow from the materials;
+/// a material's total power is shared over the area of its emitting patches; the back of a one-sided material is black,
+/// unless it is the front of a joined face.
 void make_patches(PatchSet& patches, const std::vector<bool>& wanted);
 
 }  // namespace clerestory

@@ -13,6 +13,8 @@
 namespace clerestory {
 namespace {
 
+constexpr int kMostReflections = 64;     // of one ray; what is left is lost
+constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of lamps
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Device {
@@ -85,7 +87,74 @@ struct RayScene::Impl {
   Surfaces opaque, glass;
   std::vector<GlassTable> glass_kinds;
   std::vector<std::uint32_t> kind_of_glass;  ///< by primitive of `glass`
+  struct Mirror {
+    Vec3 normal;
+    std::uint32_t plane;  ///< kMostPlanes: of none
+    Spectrum reflectance;
+  };
+  std::vector<Mirror> mirrors;
+  std::vector<std::uint32_t> mirror_of_triangle;  ///< number in `mirrors` or kNone; empty without mirrors
+  std::vector<MirrorPlane> planes;
+  static constexpr std::uint32_t kNone = 0xffffffff;
   double diameter = 0;
+
+  void find_mirrors(const PatchSet& patches) {
+    for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
+      if (!patches.is_mirror(TriangleId{t})) continue;
+      const auto& c = patches.corners[t];
+      const Vec3 a = patches.vertices[c[0]];
+      const Vec3 n = normalized(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a));
+      if (!(length(n) > 0.5)) continue;  // without area
+      if (mirror_of_triangle.empty()) mirror_of_triangle.assign(patches.triangle_count(), kNone);
+      const auto same = [&](const MirrorPlane& plane) {
+        return length(cross(plane.normal, n)) < 1e-6 && std::abs(dot(plane.normal, a) - plane.offset) < 1e-6 * diameter;
+      };
+      auto plane = static_cast<std::size_t>(std::find_if(planes.begin(), planes.end(), same) - planes.begin());
+      if (plane == planes.size() && plane < kMostPlanes) planes.push_back({n, dot(n, a)});
+      plane = std::min(plane, kMostPlanes);
+      mirror_of_triangle[t] = static_cast<std::uint32_t>(mirrors.size());
+      mirrors.push_back({plane < planes.size() ? planes[plane].normal : n, static_cast<std::uint32_t>(plane),
+                         patches.materials[patches.side_material[t][kFront]].reflectance});
+    }
+  }
+
+  const Mirror* mirror_at(TriangleId t) const {
+    if (!t.valid() || mirror_of_triangle[t] == kNone) return nullptr;
+    return &mirrors[mirror_of_triangle[t]];
+  }
+
+  /// Of one ray up to the first surface, be it a mirror.
+  Hit one_leg(const PatchSet& patches, const Ray& ray) const {
+    auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
+    rtcIntersect1(opaque.handle, &c, &r);
+    Hit hit;
+    hit.distance = r.ray.tfar;
+    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
+      hit.triangle = TriangleId{opaque.of_primitive[r.hit.primID]};
+      const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
+      hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, r.hit.u, r.hit.v);
+    }
+    if (!glass.of_primitive.empty()) hit.transmittance = through_glass(ray.origin, ray.direction, hit.distance);
+    return hit;
+  }
+
+  /// Goes on from a hit as long as it is on a mirror.
+  void follow_mirrors(const PatchSet& patches, const Ray& first, Hit& hit) const {
+    Ray ray = first;
+    for (int k = 0; k < kMostReflections; ++k) {
+      const Mirror* mirror = mirror_at(hit.triangle);
+      if (!mirror) return;
+      const double along = dot(mirror->normal, ray.direction);
+      const Vec3 n = along < 0 ? mirror->normal : -mirror->normal;
+      ray = {hit.position(first) + n * (5e-7 * diameter), ray.direction - mirror->normal * (2 * along)};
+      const Spectrum so_far = hit.transmittance * mirror->reflectance;
+      hit = one_leg(patches, ray);
+      hit.transmittance *= so_far;
+      hit.reflected = true;
+      hit.leg = ray;
+    }
+  }
 
   void tabulate_glass(const PatchSet& patches) {
     std::vector<std::uint32_t> kind_of_material(patches.materials.size(), 0xffffffff);
@@ -130,11 +199,14 @@ RayScene::RayScene(const PatchSet& patches) : impl_(std::make_unique<Impl>()) {
     impl_->glass.build(impl_->device.handle, patches, true);
   });
   impl_->tabulate_glass(patches);
+  impl_->find_mirrors(patches);
 }
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
 
+bool RayScene::has_mirrors() const { return !impl_->mirrors.empty(); }
+const std::vector<MirrorPlane>& RayScene::mirrors() const { return impl_->planes; }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return 5e-7 * impl_->diameter; }
 double RayScene::diameter() const { return impl_->diameter; }
@@ -171,22 +243,14 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
         const Ray& ray = rays[first + k];
         hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
       }
+      if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], hit);
     }
   }
 }
 
 Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray) const {
-  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
-  rtcIntersect1(impl_->opaque.handle, &c, &r);
-  Hit hit;
-  hit.distance = r.ray.tfar;
-  if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-    hit.triangle = TriangleId{impl_->opaque.of_primitive[r.hit.primID]};
-    const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
-    hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, r.hit.u, r.hit.v);
-  }
-  if (has_glass()) hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
+  Hit hit = impl_->one_leg(patches, ray);
+  if (has_mirrors()) impl_->follow_mirrors(patches, ray, hit);
   return hit;
 }
 
@@ -214,6 +278,21 @@ Spectrum RayScene::transmittance(const Vec3& from, const Vec3& to) const {
   rtcOccluded1(impl_->opaque.handle, &c, &r.ray);
   if (r.ray.tfar < 0) return Spectrum(0.0);
   return has_glass() ? glass_transmittance(from, to) : Spectrum(1.0);
+}
+
+Spectrum RayScene::transmittance_by_mirror(const Vec3& from, const Vec3& image, std::uint32_t mirror) const {
+  const MirrorPlane& plane = impl_->planes[mirror];
+  const double height = dot(plane.normal, from) - plane.offset, beyond = dot(plane.normal, image) - plane.offset;
+  if (!(height * beyond < 0)) return Spectrum(0.0);
+  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  RTCRayHit r = ray_hit(from, image - from, 0, 1);
+  rtcIntersect1(impl_->opaque.handle, &c, &r);
+  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Spectrum(0.0);
+  const auto* met = impl_->mirror_at(TriangleId{impl_->opaque.of_primitive[r.hit.primID]});
+  if (!met || met->plane != mirror) return Spectrum(0.0);
+  const Vec3 x = from + (image - from) * (height / (height - beyond));
+  const Vec3 lifted = x + plane.normal * (height > 0 ? lift() : -lift());
+  return met->reflectance * glass_transmittance(from, x) * transmittance(lifted, plane.image_of(image));
 }
 
 Spectrum RayScene::glass_transmittance(const Vec3& from, const Vec3& to) const {

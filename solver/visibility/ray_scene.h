@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "solver/model/patch_set.h"
 
@@ -15,14 +16,31 @@ struct Ray {
   Vec3 direction;  ///< unit
 };
 
-/// What a ray met first.
+/// What a ray met first, mirrors apart.
 struct Hit {
   PatchId patch;                ///< the side it met; invalid when it escaped, or met a side that takes no part
   TriangleId triangle;          ///< invalid when it escaped
   float distance = 0;           ///< along the unit direction [m]
   Spectrum transmittance{1.0};  ///< of the glass it passed on the way
 
+  bool reflected = false;  ///< by mirrors on the way
+  Ray leg;                 ///< when reflected: the last part of the way; `distance` is its length then
+
   bool escaped() const { return !triangle.valid(); }
+  /// Direction [unit] in which `ray` arrived here, and where that is.
+  const Vec3& direction(const Ray& ray) const { return reflected ? leg.direction : ray.direction; }
+  Vec3 position(const Ray& ray) const {
+    return (reflected ? leg.origin : ray.origin) + direction(ray) * static_cast<double>(distance);
+  }
+};
+
+/// A plane with mirrors in it.
+struct MirrorPlane {
+  Vec3 normal;        ///< unit
+  double offset = 0;  ///< dot(normal, x) = offset in the plane [m]
+
+  Vec3 image_of(const Vec3& x) const { return x - normal * (2 * (dot(normal, x) - offset)); }
+  Vec3 image_of_direction(const Vec3& d) const { return d - normal * (2 * dot(normal, d)); }
 };
 
 /// Sixteen segments for one packet, as separate coordinates; both ends already lifted off their surfaces.
@@ -38,8 +56,8 @@ struct SegmentPacket {
 };
 
 /// Read-only, thread safe. Opaque triangles block; glass takes its share, by the
-/// angle (glass_sheet.h). Knows triangles only, so it stays valid when
-/// make_patches() changes which sides take part.
+/// angle (glass_sheet.h); mirrors turn first_hit() into another direction, up to 64 times. Knows triangles only, so it
+/// stays valid when make_patches() changes which sides take part.
 class RayScene {
  public:
   /// Deterministic for any thread count: the tree is built by one thread.
@@ -62,7 +80,14 @@ class RayScene {
   /// Share that glass lets through between two points that see each other; 1 without glass.
   Spectrum glass_transmittance(const Vec3& from, const Vec3& to) const;
 
+  /// Share of light that gets to `from` by that mirror, from a light whose image behind it is at `image`: 0 when the
+  /// way meets no such mirror or something blocks it before or after.
+  Spectrum transmittance_by_mirror(const Vec3& from, const Vec3& image, std::uint32_t mirror) const;
+
   bool has_glass() const;
+  bool has_mirrors() const;
+  /// The planes of mirrors, no more than 64 of them: rays are reflected by all, lamps have images in these.
+  const std::vector<MirrorPlane>& mirrors() const;
   /// Distance by which ray ends are lifted along their surface's normal, so that rounding to float cannot put them
   /// behind it: a few units in the last place at the rim of the scene [m].
   double lift() const;

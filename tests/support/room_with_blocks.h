@@ -46,6 +46,14 @@ class PatchBuilder {
     material_ = MaterialId{set_.materials.size() - 1};
     return *this;
   }
+  /// A mirror for what is added from now on.
+  PatchBuilder& mirror(double reflectance) {
+    Material m;
+    m.kind = MaterialKind::mirror, m.reflectance = Spectrum(reflectance);
+    set_.materials.push_back(m);
+    material_ = MaterialId{set_.materials.size() - 1};
+    return *this;
+  }
   /// A new named surface for what is added from now on.
   PatchBuilder& surface(const std::string& name) {
     set_.surfaces.push_back(name);

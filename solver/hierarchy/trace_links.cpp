@@ -33,11 +33,9 @@ bool is_small(const ElementTree& tree, std::uint32_t v) {
   return true;
 }
 
-/// Receivers in tree order: small clusters, and the leaves outside of them.
-std::vector<Receiver> choose_receivers(const ElementTree& tree, const PatchSet& patches, double diameter) {
+/// Receivers in tree order: clusters within the diameter, and the leaves outside of them.
+std::vector<Receiver> clusters_within(double diameter, const ElementTree& tree, const std::vector<Sphere>& spheres) {
   std::vector<Receiver> receivers;
-  std::vector<Sphere> spheres;
-  if (diameter > 0) spheres = bounding_spheres(tree, patches);
   for (std::uint32_t v = 0; v < tree.size();) {
     const std::uint32_t first = tree.first_leaf(v), last = tree.leaf_end(v);
     const bool leaf = tree.is_leaf(v);
@@ -47,6 +45,22 @@ std::vector<Receiver> choose_receivers(const ElementTree& tree, const PatchSet& 
     } else {
       ++v;
     }
+  }
+  return receivers;
+}
+
+/// With a diameter that grows until there are few enough of them.
+std::vector<Receiver> choose_receivers(const ElementTree& tree, const PatchSet& patches, const LinkOptions& options) {
+  if (!(options.cluster_diameter > 0)) return clusters_within(0, tree, {});
+  const std::vector<Sphere> spheres = bounding_spheres(tree, patches);
+  std::vector<Receiver> receivers = clusters_within(options.cluster_diameter, tree, spheres);
+  double diameter = options.cluster_diameter;
+  for (std::size_t before = receivers.size() + 1; receivers.size() > options.most_receivers;) {
+    diameter *= 1.5;
+    std::vector<Receiver> fewer = clusters_within(diameter, tree, spheres);
+    if (fewer.size() == before) break;
+    before = receivers.size();
+    receivers = std::move(fewer);
   }
   return receivers;
 }
@@ -449,7 +463,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   NodeLight nodes;
   if (B.size() == n) nodes = node_light(tree, B);
   const Net net(options.bundle_rays, stream_key(options.seed, kBundle));
-  const std::vector<Receiver> receivers = choose_receivers(tree, patches, options.cluster_diameter);
+  const std::vector<Receiver> receivers = choose_receivers(tree, patches, options);
   std::array<std::uint32_t, kNeighbours> nobody;
   nobody.fill(PatchId::kNone);
   std::vector<std::array<std::uint32_t, kNeighbours>> neighbours(receivers.size(), nobody);

@@ -28,9 +28,9 @@ constexpr double kStakeByTolerance = 1e-4;  // flux at stake of `bf`, as a share
 /// Below this much memory of links [bytes] every hit keeps a link of its own: nodes hide what is darker or brighter in
 /// them than was known when the links were made, and a room lit by a spot on its ceiling loses 1 % by that.
 constexpr double kLinksToSpare = 256e6;
-/// Rays of all bundles, and of all pairs, in one round: half a minute of a core. Beyond, receivers get fewer, as a
-/// wrong one among so many does little harm.
-constexpr double kMostRays = 3e7;
+/// Rays of all bundles, and of all pairs, in one round: seconds of a core. Beyond, receivers get fewer, as a wrong one
+/// among so many does little harm.
+constexpr double kMostRays = 1.5e7;
 constexpr double kGroundLevel = 0.1;  // share of a space's area that is no brighter than its ground level
 
 /// Quality of one round: thresholds fall from round to round.

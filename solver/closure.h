@@ -18,7 +18,7 @@ struct Closure {
   unsigned long long rays = 0;
 };
 
-/// By rays_per_patch (at least 16) stratified cosine rays; exactly 1 and 0 in a closed room without glass.
+/// By rays_per_patch (at least 8) stratified cosine rays; exactly 1 and 0 in a closed room without glass.
 Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed);
 
 }  // namespace clerestory

@@ -175,7 +175,7 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
     std::vector<float> stake(candidates.size(), 0.0f);
     std::vector<unsigned long long> spent(candidates.size(), 0);
     parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
+      for (std::size_t k = begin; k < end && !monitor.should_stop(); ++k) {
         const std::uint32_t e = candidates[k];
         const PatchId p{std::size_t{mesh[e].patch}};
         const double edge = mesh.edge_length(e, mesh[e].edge);
@@ -191,6 +191,7 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
       }
     });
     for (const auto r : spent) rays += r;
+    if (monitor.should_stop()) break;
     marked.clear();
     std::vector<std::pair<float, std::uint32_t>> by_stake;
     for (std::size_t k = 0; k < candidates.size(); ++k)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -469,16 +470,17 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   std::vector<std::array<std::uint32_t, kNeighbours>> neighbours(receivers.size(), nobody);
   transport.blocks.resize((receivers.size() + kReceiversInBlock - 1) / kReceiversInBlock);
 
-  constexpr std::size_t kBatch = 64;  // blocks between looks at the clock
+  constexpr std::size_t kBatch = 64;  // blocks between reports
+  std::atomic<bool> stopped = false;
   for (std::size_t begin = 0; begin < transport.blocks.size(); begin += kBatch) {
-    if (monitor.should_stop()) {
-      transport.complete = false;
-      return transport;
-    }
     monitor.report("links", static_cast<double>(begin) / static_cast<double>(transport.blocks.size()));
     parallel_for(std::min(kBatch, transport.blocks.size() - begin), 1, [&](std::size_t from, std::size_t to) {
       Tracer tracer(light, tree, net, B.size() == n ? &nodes : nullptr, E, options);
       for (std::size_t b = begin + from; b < begin + to; ++b) {
+        if (monitor.should_stop()) {
+          stopped = true;
+          return;
+        }
         LinkBlock& block = transport.blocks[b];
         const std::size_t first = b * kReceiversInBlock, last = std::min(receivers.size(), first + kReceiversInBlock);
         block.first_leaf = receivers[first].first_leaf, block.leaf_end = receivers[last - 1].leaf_end;
@@ -486,6 +488,10 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
         block.links.shrink_to_fit(), block.shares.shrink_to_fit();
       }
     });
+    if (stopped) {
+      transport.complete = false;
+      return transport;
+    }
   }
   const int pairs = light.lamps.has_emitters() ? options.lamp_rays : 0;
   transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs);

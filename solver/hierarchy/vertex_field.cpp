@@ -57,7 +57,7 @@ class Gatherer {
       shares_.resize(own);
     }
     std::vector<unsigned long long> rays(end - begin, 0);
-    constexpr std::size_t kBlock = 4096;
+    constexpr std::size_t kBlock = 1024;
     for (std::size_t first = begin; first < end; first += kBlock) {
       if (monitor.should_stop()) return false;
       monitor.report("vertices", static_cast<double>(first) / static_cast<double>(end));
@@ -193,6 +193,13 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
 VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
                          const Monitor& monitor) {
   VertexField field;
+  if (monitor.should_stop()) {
+    const std::size_t points = mesh.points().position.size();
+    field.E = field.small_lights = Field(points, problem.patches.channels);
+    field.noise.resize(points), field.known.resize(points);
+    field.complete = false;
+    return field;
+  }
   field.E = field.small_lights = Field(0, problem.patches.channels);
   Gatherer gatherer(problem, B, mesh, options);
   for (int round = 0;; ++round) {

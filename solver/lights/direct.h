@@ -12,6 +12,7 @@ struct DirectOptions {
   int edge_rays = 256;  ///< instead, where as many rays of a pilot disagree: the patch lies on the edge of a shadow
   int sky_rays = 256;   ///< cosine rays a patch that look for the sky; 0: without sky
   std::uint64_t seed = 1;
+  bool rough_first = true;  ///< with a deadline: all patches get a rough value, in case it comes before the good ones
 };
 
 struct DirectLight {
@@ -22,8 +23,7 @@ struct DirectLight {
 };
 
 /// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share. Looking twice at edges
-/// favours all lit and all dark alike, by less than 0.03 of a patch, which cancels along an edge. With a deadline all
-/// patches get a rough value first, in case it comes before the good ones are done.
+/// favours all lit and all dark alike, by less than 0.03 of a patch, which cancels along an edge.
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {});
 
 }  // namespace clerestory

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <numeric>
+#include <span>
 
 #include "solver/closure.h"
 #include "solver/hierarchy/balance.h"
@@ -71,12 +72,13 @@ std::size_t leaves_under(const ElementMesh& mesh, std::uint32_t e) {
   return leaves_under(mesh, mesh[e].first_half) + leaves_under(mesh, mesh[e].first_half + 1);
 }
 
-/// The round's B on the leaves of now: halves inherit. Both sets of leaves are in the order of the mesh.
-Field inherited(const Field& B, const Round& round, const ElementMesh& mesh) {
+/// What was found for the elements that were leaves, on the leaves of now: halves inherit. Both are in the order of the
+/// mesh.
+Field inherited(const Field& B, std::span<const std::uint32_t> were_leaves, const ElementMesh& mesh) {
   Field out(mesh.leaf_count(), B.channels);
   std::size_t leaf = 0;
-  for (std::size_t i = 0; i < round.element.size(); ++i)
-    for (std::size_t k = leaves_under(mesh, round.element[i]); k > 0; --k) out.set(leaf++, B[i]);
+  for (std::size_t i = 0; i < were_leaves.size(); ++i)
+    for (std::size_t k = leaves_under(mesh, were_leaves[i]); k > 0; --k) out.set(leaf++, B[i]);
   return out;
 }
 
@@ -136,12 +138,13 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   const std::size_t n = leaves.patch_count();
 
   if (options.oracle == HierarchyOptions::Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
+  quality.direct.rough_first = false;  // a round that is stopped is not shown
   DirectLight direct = direct_light(Illumination(problem), quality.direct, monitor);
   if (monitor.should_stop()) return round;
   Field guess, glow;
   if (before) {
-    guess = inherited(before->result.solution.B, *before, mesh);
-    glow = inherited(above_ground(before->result.elements, before->result.solution.B, *before), *before, mesh);
+    guess = inherited(before->result.solution.B, before->element, mesh);
+    glow = inherited(above_ground(before->result.elements, before->result.solution.B, *before), before->element, mesh);
   } else {
     glow = leaves.M;
     for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.scattered(direct.E, i));
@@ -203,17 +206,15 @@ HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh
   out.elements = mesh.leaf_patches();
   const Problem problem{out.elements, whole.rays, whole.lights};
   const Illumination light(problem);
+  const bool late = ambient_only || monitor.should_stop();
   const DirectLight direct =
-      direct_light(light, {.lamp_rays = 16, .edge_rays = 16, .sky_rays = 32, .seed = options.seed}, monitor);
-  const Closure closure = measure_closure(problem, 16, options.seed);
-  out.solution =
-      shoot(problem, direct, closure,
-            {.stop_fraction = 0.03, .rays_per_patch = 32, .max_rounds = ambient_only ? 0 : 1000, .seed = options.seed},
-            monitor);
-  out.small_lights = direct_light(light, {.lamp_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = options.seed}).E;
+      direct_light(light, {.lamp_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
+  const Closure closure = measure_closure(problem, late ? 8 : 16, options.seed);
+  out.solution = shoot(
+      problem, direct, closure,
+      {.stop_fraction = 0.03, .rays_per_patch = 32, .max_rounds = late ? 0 : 1000, .seed = options.seed}, monitor);
   out.solution.method = "hierarchical";
-  out.solution.log.push_back(ambient_only ? "stopped early: the ambient estimate"
-                                          : "early picture by progressive shooting");
+  out.solution.log.push_back(late ? "the ambient estimate" : "early picture by progressive shooting");
   return out;
 }
 
@@ -223,6 +224,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
                                   const Monitor& monitor) {
   HierarchicalSolution early;
   const bool hurry = monitor.deadline != Monitor{}.deadline;
+  std::vector<std::uint32_t> shown = mesh.leaves();  // the elements of what is returned
   if (hurry) early = early_picture(problem, mesh, options, false, monitor);
 
   std::unique_ptr<Round> last;
@@ -236,7 +238,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     return !monitor.should_stop();
   };
 
-  bool going = true;
+  bool going = !monitor.should_stop();
   for (int number = 0; going && number < kMostRounds; ++number) {
     monitor.report("refine", static_cast<double>(number) / kMostRounds);
     const std::size_t before = mesh.leaf_count();
@@ -264,6 +266,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   HierarchicalSolution out;
   if (last) {
     out = std::move(last->result);
+    shown = std::move(last->element);
   } else {
     out = hurry ? std::move(early) : early_picture(problem, mesh, options, true, {});
     if (!hurry) log.push_back(out.solution.log.back());
@@ -271,6 +274,11 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   if (!going) {
     out.solution.stop = why_stopped(monitor);
     log.push_back("stopped early");
+  }
+  if (shown.size() != mesh.leaf_count()) {  // stopped after more were halved
+    for (Field* f : {&out.small_lights, &out.solution.E, &out.solution.B})
+      if (!f->value.empty()) *f = inherited(*f, shown, mesh);
+    out.elements = mesh.leaf_patches();
   }
   out.solution.log = std::move(log);
   out.solution.rays = rays;

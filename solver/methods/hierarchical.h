@@ -27,9 +27,9 @@ struct HierarchyOptions {
 
 /// The leaf elements, and the light on them.
 struct HierarchicalSolution {
-  PatchSet elements;  ///< ElementMesh::leaf_patches()
-  Field
-      small_lights;  ///< N x channels, direct irradiance of sun and luminaires on each leaf [W/m2]; part of solution.E
+  PatchSet elements;   ///< ElementMesh::leaf_patches()
+  Field small_lights;  ///< N x channels, direct irradiance of sun and luminaires on each leaf [W/m2]; part of
+                       ///< solution.E; empty when stopped before the first round
   Solution solution;
 };
 

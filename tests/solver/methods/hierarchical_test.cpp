@@ -260,6 +260,24 @@ TEST(Hierarchical, StoppedBeforeItsFirstRoundItGivesTheAmbientEstimateAndSaysSo)
   EXPECT_NE(h.solution.log[0].find("ambient"), std::string::npos) << h.solution.log[0];
 }
 
+TEST(Hierarchical, StoppedAfterElementsWereHalvedTheHalvesShowWhatWasFoundForTheWhole) {
+  const Room room(lamp_room(0.5, 6));
+  ElementMesh mesh(room.patches, room.map);
+  const std::size_t before = mesh.leaf_count();
+  std::atomic<bool> stop = false;
+  Monitor monitor;
+  monitor.interrupted = &stop;
+  monitor.progress = [&](std::string_view, double) { stop = mesh.leaf_count() > before; };
+  const HierarchicalSolution h = hierarchical(room.problem, mesh, {}, monitor);
+  ASSERT_GT(mesh.leaf_count(), before);
+  ASSERT_EQ(h.solution.stop, StopReason::interrupted);
+  ASSERT_EQ(h.elements.patch_count(), mesh.leaf_count());
+  ASSERT_EQ(h.solution.E.size(), mesh.leaf_count());
+  ASSERT_EQ(h.solution.B.size(), mesh.leaf_count());
+  for (std::size_t i = 0; i < mesh.leaf_count(); ++i)
+    EXPECT_NEAR(h.solution.B[i][0], h.elements.M[i][0] + h.elements.rho[i][0] * h.solution.E[i][0], 1e-9) << i;
+}
+
 TEST(Hierarchical, WithADeadlineThatIsPastItStillHasALight) {
   const Room room(lamp_room(0.5, 6));
   Monitor monitor;

@@ -11,9 +11,9 @@
 namespace clerestory {
 
 struct MeshOptions {
-  std::optional<double> max_element;    ///< longest edge [m]; default: chosen so that about target_triangles result
-  double target_triangles = 6000;       ///< for the default of max_element; fine detail of the model may need more
-  std::optional<double> fit_triangles;  ///< edges may be longer, until there are about so few triangles
+  std::optional<double> max_element;      ///< longest edge [m]; default: chosen so that about target_triangles result
+  double target_triangles = 6000;         ///< for the default of max_element; fine detail of the model may need more
+  std::optional<double> fit_triangles{};  ///< edges may be longer, until there are about so few triangles
 };
 
 struct MeshedScene {

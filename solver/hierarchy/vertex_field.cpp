@@ -13,6 +13,8 @@ namespace {
 
 /// The darkest irradiance whose relative error counts, as share of the mean.
 constexpr double kDark = 0.02;
+/// Share of the difference between corners that may hide a shadow which lies between them.
+constexpr double kSteep = 0.125;
 constexpr int kMostRounds = 40;
 
 /// The points of the mesh that are worth a gather: all, or so many, those of the largest elements.
@@ -185,6 +187,8 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
     const auto x = mesh.corner_positions(leaf);
     double off = 0;
     for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, gradient, k)));
+    const auto [low, high] = std::minmax({E[point[0]], E[point[1]], E[point[2]]});
+    off = std::max(off, kSteep * (high - low));
     errors.push_back({leaf, off, std::max(mean(point, E), dark), mean(point, field.noise)});
   }
   return errors;

@@ -22,9 +22,9 @@ GatherQuality sensor_quality(const SolveOptions& options) {
     case Accuracy::draft:
       return quality(options, 256, 512, 64, 16);
     case Accuracy::standard:
-      return quality(options, 512, 2048, 128, 32);
+      return quality(options, 256, 2048, 128, 32);
     case Accuracy::fine:
-      return quality(options, 2048, 8192, 256, 64);
+      return quality(options, 1024, 8192, 256, 64);
   }
   return {};
 }
@@ -77,7 +77,7 @@ GatherQuality vertex_quality(const SolveOptions& options) {
     case Accuracy::standard:
       return quality(options, 256, 768, 128, 16);
     case Accuracy::fine:
-      return quality(options, 512, 2048, 256, 32);
+      return quality(options, 512, 2048, 128, 32);
   }
   return {};
 }
@@ -95,7 +95,8 @@ PointIrradiance gather_at_sensors(const Problem& problem, const Solution& soluti
         const Vec3 n = points[i].normal;
         return Place{points[i].position - problem.patches.origin + n * (2 * problem.rays.lift()), n};
       },
-      GatherPattern(sensor_quality(options), options.seed), 4 * paths_per_point(options), stream_key(options.seed, kSensorRays), "sensors", monitor,
+      GatherPattern(sensor_quality(options), options.seed), 4 * paths_per_point(options),
+      stream_key(options.seed, kSensorRays), "sensors", monitor,
       [&](std::size_t i, const Spectrum& E, const Spectrum& error) {
         result.E.set(i, E);
         if (!result.std_error.value.empty()) result.std_error.set(i, error);
@@ -118,7 +119,8 @@ unsigned long long gather_at_points(const Problem& problem, const Solution& solu
         const Vec3 n = lightmap.sample_normal[i];
         return Place{lightmap.sample_position[i] + n * problem.rays.lift(), n};
       },
-      GatherPattern(vertex_quality(options), options.seed), paths_per_point(options), stream_key(options.seed, kVertexRays), "vertices", monitor,
+      GatherPattern(vertex_quality(options), options.seed), paths_per_point(options),
+      stream_key(options.seed, kVertexRays), "vertices", monitor,
       [&](std::size_t i, const Spectrum& value, const Spectrum& error) {
         E.set(i, value);
         if (!std_error.value.empty()) std_error.set(i, error);

@@ -35,7 +35,7 @@ constexpr double kFewestRays = 64;  ///< a patch met by fewer is known to worse 
 }  // namespace
 
 double target_triangles(Method method, Accuracy accuracy) {
-  return method == Method::hierarchical ? by_accuracy(accuracy, 1500, 4000, 8000)
+  return method == Method::hierarchical ? by_accuracy(accuracy, 1400, 2800, 5000)
                                         : by_accuracy(accuracy, 2000, 6000, 20'000);
 }
 

@@ -26,11 +26,11 @@ Detail detail(const SolveOptions& options) {
   const double finer = std::pow(0.7071, options.tighten);
   switch (options.accuracy) {
     case Accuracy::draft:
-      return {64 * more, 64 * more, 0.3, 0.08 * finer, 1.0 / 4, 100'000};
+      return {128 * more, 64 * more, 0.3, 0.1 * finer, 1.0 / 4, 100'000};
     case Accuracy::standard:
-      return {512 * more, 256 * more, 0.1, 0.025 * finer, 1.0 / 8, 400'000};
+      return {256 * more, 128 * more, 0.1, 0.05 * finer, 1.0 / 8, 400'000};
     case Accuracy::fine:
-      return {512 * more, 512 * more, 0.05, 0.0125 * finer, 1.0 / 16, 1'600'000};
+      return {256 * more, 256 * more, 0.05, 0.035 * finer, 1.0 / 16, 1'600'000};
   }
   return {};
 }

@@ -14,7 +14,7 @@ namespace {
 /// The darkest irradiance whose relative error counts, as share of the mean.
 constexpr double kDark = 0.02;
 /// Share of the difference between corners that may hide a shadow which lies between them.
-constexpr double kSteep = 0.125;
+constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
 
 /// The points of the mesh that are worth a gather: all, or so many, those of the largest elements.

@@ -4,9 +4,10 @@
 #include <iostream>
 
 #include "meshing/build_patches.h"
+#include "meshing/make_lightmap.h"
 #include "solver/lit_sides.h"
 #include "solver/model/version.h"
-#include "solver/solve.h"
+#include "solver/solve_hierarchical.h"
 
 int main() {
   using namespace clerestory;
@@ -29,11 +30,12 @@ int main() {
   const Lights lights = to_local_frame(scene.lights, patches.origin);
   const Problem problem{patches, rays, lights};
   make_patches(patches, find_lit_sides(problem).wanted);
-  const Solution solution = solve(problem, {});
+  const ShownSolution shown = solve_hierarchical(problem, make_lightmap(patches), report.max_element, {});
 
   double flux = 0;
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) flux += solution.B[i][0] * patches.area[i];
-  const double B = flux / patches.total_area();
+  for (std::size_t i = 0; i < shown.elements.patch_count(); ++i)
+    flux += shown.solution.B[i][0] * shown.elements.area[i];
+  const double B = flux / shown.elements.total_area();
   std::cout << "clerestory " << kVersion << ": B = " << B << " W/m2, expected 40\n";
   return std::abs(B - 40) < 0.04 ? 0 : 1;
 }

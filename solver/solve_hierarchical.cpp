@@ -83,12 +83,20 @@ Field field_on_leaves(const ElementMesh& mesh, const std::vector<std::uint32_t>&
       share += part;
       ++end;
     }
-    const Spectrum exact = coarse.small_lights[j];
+    mean *= 1 / share;
     if (known && high - low > kVaries * high) {
-      const Spectrum missing = exact - mean / share;
+      const Spectrum exact = coarse.small_lights[j];
       for (std::size_t i = begin; i < end; ++i) {
-        E.add(i, missing);
-        for (int c = 0; c < E.channels; ++c) E.at(i, c) = std::max(E.at(i, c), 0.0);
+        const auto& point = mesh[leaves[i]].point;
+        for (int c = 0; c < E.channels; ++c) {
+          double lamps = 0, rest = 0;
+          for (const std::uint32_t p : point) {
+            lamps += field.small_lights.at(p, c) / 3;
+            rest += (field.E.at(p, c) - field.small_lights.at(p, c)) / 3;
+          }
+          // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
+          E.at(i, c) = rest + (mean[c] > 0 ? lamps * exact[c] / mean[c] : exact[c]);
+        }
       }
     }
     begin = end;

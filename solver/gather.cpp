@@ -22,9 +22,9 @@ GatherQuality sensor_quality(const SolveOptions& options) {
     case Accuracy::draft:
       return quality(options, 256, 512, 64, 16);
     case Accuracy::standard:
-      return quality(options, 256, 2048, 128, 32);
+      return quality(options, 256, 2048, 256, 32);
     case Accuracy::fine:
-      return quality(options, 1024, 8192, 256, 64);
+      return quality(options, 1024, 8192, 512, 64);
   }
   return {};
 }

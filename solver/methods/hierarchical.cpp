@@ -32,6 +32,9 @@ constexpr double kLinksToSpare = 256e6;
 /// Rays of all bundles, and of all pairs, in one round: seconds of a core. Beyond, receivers get fewer, as a wrong one
 /// among so many does little harm.
 constexpr double kMostRays = 1.5e7;
+/// Scenes of few elements cost next to nothing, and their energy would hang on few rays: they get more of them.
+constexpr double kFewestRays = 5e5;
+constexpr int kMostOfOne = 1024;
 constexpr double kGroundLevel = 0.1;  // share of a space's area that is no brighter than its ground level
 
 /// Quality of one round: thresholds fall from round to round.
@@ -46,8 +49,10 @@ Quality coarse(const HierarchyOptions& o) {
           {.lamp_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
           1e-3};
 }
-Quality full(const HierarchyOptions& o) {
-  return {{.bundle_rays = o.bundle_rays, .lamp_rays = o.lamp_rays, .seed = o.seed},
+Quality full(const HierarchyOptions& o, std::size_t leaves) {
+  int bundle = o.bundle_rays, pairs = o.lamp_rays;
+  for (; bundle * static_cast<double>(leaves) < kFewestRays && bundle < kMostOfOne; bundle *= 2) pairs *= 2;
+  return {{.bundle_rays = bundle, .lamp_rays = pairs, .seed = o.seed},
           {.lamp_rays = 64, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
           o.residual};
 }
@@ -258,10 +263,13 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
                                       last->result.solution.B, how, rays, monitor);
     log.push_back(name + ": " + std::to_string(halved) + " halved, " + std::to_string(mesh.leaf_count()) + " elements");
     // Halves know no more of the light than the element they came from did: nodes must not take them for alike.
-    const double worth_another = merges(mesh.leaf_count(), full(options).links) ? kWorthAnotherMerged : kWorthAnother;
+    const double worth_another =
+        merges(mesh.leaf_count(), full(options, mesh.leaf_count()).links) ? kWorthAnotherMerged : kWorthAnother;
     if (static_cast<double>(mesh.leaf_count()) < worth_another * static_cast<double>(before)) break;
   }
-  if (going) going = go_on(solve_round(problem, mesh, options, full(options), "last round", last.get(), monitor));
+  if (going)
+    going =
+        go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count()), "last round", last.get(), monitor));
 
   HierarchicalSolution out;
   if (last) {

@@ -33,7 +33,7 @@ constexpr double kLinksToSpare = 256e6;
 /// among so many does little harm.
 constexpr double kMostRays = 1.5e7;
 /// Scenes of few elements cost next to nothing, and their energy would hang on few rays: they get more of them.
-constexpr double kFewestRays = 5e5;
+constexpr std::size_t kFewLeaves = 1500;
 constexpr int kMostOfOne = 1024;
 constexpr double kGroundLevel = 0.1;  // share of a space's area that is no brighter than its ground level
 
@@ -51,7 +51,7 @@ Quality coarse(const HierarchyOptions& o) {
 }
 Quality full(const HierarchyOptions& o, std::size_t leaves) {
   int bundle = o.bundle_rays, pairs = o.lamp_rays;
-  for (; bundle * static_cast<double>(leaves) < kFewestRays && bundle < kMostOfOne; bundle *= 2) pairs *= 2;
+  for (std::size_t n = leaves; n < kFewLeaves && bundle < kMostOfOne; n *= 2) bundle *= 2, pairs *= 2;
   return {{.bundle_rays = bundle, .lamp_rays = pairs, .seed = o.seed},
           {.lamp_rays = 64, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
           o.residual};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/hierarchy/links.h"
+
 namespace clerestory {
 namespace {
 
@@ -27,8 +29,6 @@ constexpr int kFewestRays = 32;
 constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all that was measured
 constexpr double kElementsOfPoint = 2;
 constexpr double kConforming = 2;  // points for one that is asked for: neighbours are halved as well
-
-constexpr double kLinksToSpare = 30e6;  // while there are fewer, every ray has its own (methods/hierarchical.cpp)
 
 constexpr MemoryPlan kLeast{.bundle_rays = kFewestRays, .lamp_rays = 16};
 

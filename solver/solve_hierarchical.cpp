@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "solver/gather.h"
 #include "solver/hierarchy/vertex_field.h"
@@ -35,71 +37,68 @@ Detail detail(const SolveOptions& options) {
   return {};
 }
 
-MemoryCounts whole(const Problem& problem, const VertexLightmap& map) {
-  const std::size_t sides = problem.patches.patch_count();
-  return {
-      .triangles = problem.patches.triangle_count(), .sides = sides, .elements = sides, .points = map.position.size()};
+MemoryCounts whole(const PatchSet& patches, const VertexLightmap& map) {
+  const std::size_t sides = patches.patch_count();
+  return {.triangles = patches.triangle_count(), .sides = sides, .elements = sides, .points = map.position.size()};
 }
 
 /// The detail that was asked for, or what a limit of memory leaves of it.
-std::optional<MemoryPlan> memory_plan(const Problem& problem, const VertexLightmap& map, const SolveOptions& options) {
+std::optional<MemoryPlan> memory_plan(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options) {
   const Detail d = detail(options);
   const MemoryPlan wish{std::min(20 * map.position.size() + 10'000, d.most_points), HierarchyOptions{}.most_elements,
                         d.bundle_rays, d.lamp_rays};
   if (options.memory_limit == 0) return wish;
-  return plan_memory(whole(problem, map), wish, options.memory_limit);
+  return plan_memory(whole(patches, map), wish, options.memory_limit);
 }
 
-/// Irradiance of the leaves from that at their vertices. Leaves of element j of the transport are those of its own that
-/// follow each other; where sun or lamp light varies among their corners, their mean is put right by what the transport
-/// knows of it.
-Field field_on_leaves(const ElementMesh& mesh, const std::vector<std::uint32_t>& transport_leaves,
-                      const HierarchicalSolution& coarse, const VertexField& field) {
+/// Mean of sun and lamp light over leaves of one element, and whether it varies among their corners.
+struct SmallLights {
+  Spectrum mean;
+  bool varies = false;
+};
+
+SmallLights small_lights(const ElementMesh& mesh, std::span<const std::uint32_t> leaves, const VertexField& field) {
   constexpr double kVaries = 0.1;  // less is left to the vertices, which know it as well
+  SmallLights found;
+  double low = std::numeric_limits<double>::infinity(), high = 0, share = 0;
+  for (const std::uint32_t leaf : leaves) {
+    const double part = std::ldexp(1.0, -mesh[leaf].level);
+    for (const std::uint32_t p : mesh[leaf].point) {
+      if (!field.known[p]) return {};
+      const Spectrum lamps = field.small_lights[p];
+      found.mean += lamps * (part / 3);
+      low = std::min(low, luminous_mean(lamps)), high = std::max(high, luminous_mean(lamps));
+    }
+    share += part;
+  }
+  found.mean *= 1 / share;
+  found.varies = high - low > kVaries * high;
+  return found;
+}
+
+/// Irradiance of the leaves from that at their vertices; where sun or lamp light varies among the corners of what was
+/// one element for transport, their mean of it is put right by the exact flux that the transport found there.
+Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
+                      const HierarchicalSolution& coarse, const VertexField& field) {
   Field E = leaf_irradiance(mesh, field.E);
   if (coarse.small_lights.value.empty()) return E;
   const std::vector<std::uint32_t> leaves = mesh.leaves();
-  std::vector<std::uint32_t> stack;
   std::size_t begin = 0;
   for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
-    std::size_t end = begin;
-    Spectrum mean(0.0);
-    double low = 1e300, high = 0, share = 0;
-    bool known = true;
-    for (stack.assign(1, transport_leaves[j]); !stack.empty();) {
-      const auto& e = mesh[stack.back()];
-      stack.pop_back();
-      if (!e.is_leaf()) {
-        stack.push_back(e.first_half), stack.push_back(e.first_half + 1);
-        continue;
-      }
-      const double part = std::ldexp(1.0, -e.level);
-      for (const std::uint32_t p : e.point) {
-        known = known && field.known[p];
-        const Spectrum lamps = field.small_lights[p];
-        mean += lamps * (part / 3);
-        low = std::min(low, luminous_mean(lamps)), high = std::max(high, luminous_mean(lamps));
-      }
-      share += part;
-      ++end;
-    }
-    mean *= 1 / share;
-    if (known && high - low > kVaries * high) {
-      const Spectrum exact = coarse.small_lights[j];
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto& point = mesh[leaves[i]].point;
-        for (int c = 0; c < E.channels; ++c) {
-          double lamps = 0, rest = 0;
-          for (const std::uint32_t p : point) {
-            lamps += field.small_lights.at(p, c) / 3;
-            rest += (field.E.at(p, c) - field.small_lights.at(p, c)) / 3;
-          }
-          // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
-          E.at(i, c) = rest + (mean[c] > 0 ? lamps * exact[c] / mean[c] : exact[c]);
+    const auto own = std::span(leaves).subspan(begin, mesh.leaves_under(transport_leaves[j]));
+    const SmallLights gathered = small_lights(mesh, own, field);
+    for (std::size_t k = 0; k < own.size() && gathered.varies; ++k)
+      for (int c = 0; c < E.channels; ++c) {
+        double lamps = 0, rest = 0;
+        for (const std::uint32_t p : mesh[own[k]].point) {
+          lamps += field.small_lights.at(p, c) / 3;
+          rest += (field.E.at(p, c) - field.small_lights.at(p, c)) / 3;
         }
+        // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
+        const double exact = coarse.small_lights.at(j, c), mean = gathered.mean[c];
+        E.at(begin + k, c) = rest + (mean > 0 ? lamps * exact / mean : exact);
       }
-    }
-    begin = end;
+    begin += own.size();
   }
   return E;
 }
@@ -131,15 +130,15 @@ void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<
 
 }  // namespace
 
-bool has_memory_for(const Problem& problem, const VertexLightmap& map, const SolveOptions& options) {
-  if (options.method == Method::hierarchical) return memory_plan(problem, map, options).has_value();
-  return options.memory_limit == 0 || predicted_memory(whole(problem, map)) <= options.memory_limit;
+bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options) {
+  if (options.method == Method::hierarchical) return memory_plan(patches, map, options).has_value();
+  return options.memory_limit == 0 || predicted_memory(whole(patches, map)) <= options.memory_limit;
 }
 
 ShownSolution solve_hierarchical(const Problem& problem, VertexLightmap map, double longest_edge,
                                  const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
   const Detail d = detail(options);
-  const MemoryPlan plan = memory_plan(problem, map, options).value_or(MemoryPlan{0, 0, 32, 16});
+  const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(MemoryPlan{0, 0, 32, 16});
   ElementMesh mesh(problem.patches, std::move(map));
   HierarchicalSolution coarse = hierarchical(problem, mesh,
                                              {.bundle_rays = plan.bundle_rays,

@@ -14,7 +14,7 @@ struct ShownSolution {
 };
 
 /// Whether a limit of memory leaves room for a solve on these patches, matrices aside.
-bool has_memory_for(const Problem& problem, const VertexLightmap& map, const SolveOptions& options);
+bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options);
 
 /// Solves on a hierarchy, gathers at vertices, and halves elements until straight lines between vertices are good
 /// enough. What is gathered there becomes the elements' radiosity, for sensors to gather from; where an element

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <new>
-#include <tuple>
 
 #include <CLI/CLI.hpp>
 
@@ -87,53 +87,54 @@ struct Prepared {
   VertexLightmap map;
 };
 
-/// Meshes, and drops the sides that light cannot reach; while that is too much for the memory limit, again with larger
-/// elements. `settings` end as they are in force. Nothing after Ctrl-C.
-std::optional<Prepared> prepare(const Scene& scene, Settings& settings, std::optional<RayScene>& rays,
-                                RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
-  const std::size_t limit = settings.memory_limit.value_or(0);
-  const std::size_t faces = scene.polygons.face_count();
-  const double asked = settings.mesh.max_element.value_or(0), wanted = settings.mesh.target_triangles;
-  if (limit > 0) {
-    const std::size_t fit = triangles_that_fit(faces, limit);
-    if (fit == 0) refuse_memory(scene, least_memory({faces, faces, faces, faces, faces}), limit);
-    settings.mesh.fit_triangles = static_cast<double>(fit);
-  }
-  for (std::size_t last = 0;;) {
-    Lap lap;
-    Prepared p;
-    std::tie(p.patches, p.repairs) = [&] {
-      MeshedScene meshed = build_patches(scene, settings.mesh, monitor);
-      return std::pair(std::move(meshed.patches), meshed.report);
-    }();
-    p.patches.channels = settings.channels;
-    lap.add_to(seconds.mesh);
-    if (monitor.is_interrupted()) return {};
-    rays.emplace(p.patches);
-    const Lights lights = to_local_frame(scene.lights, p.patches.origin);
-    p.lit_sides = find_lit_sides({p.patches, *rays, lights}, settings.solve.seed, monitor);
-    make_patches(p.patches, p.lit_sides.wanted);
-    if (p.patches.patch_count() == 0)
-      throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
-    p.map = make_lightmap(p.patches);
-    lap.add_to(seconds.build);
-    if (limit == 0) return p;
+/// surfaces -> patches -> rays -> sides that light can reach -> points. Nothing after Ctrl-C.
+std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, std::optional<RayScene>& rays,
+                                RunReport::Seconds& seconds, const Monitor& monitor) {
+  Lap lap;
+  MeshedScene meshed = build_patches(scene, settings.mesh, monitor);
+  Prepared p{std::move(meshed.patches), meshed.report, {}, {}};
+  p.patches.channels = settings.channels;
+  lap.add_to(seconds.mesh);
+  if (monitor.is_interrupted()) return {};
 
-    settings.solve.memory_limit = memory_after_reading(limit, p.repairs);
-    if (has_memory_for({p.patches, *rays, lights}, p.map, settings.solve)) {
-      const bool coarser = asked > 0 ? p.repairs.max_element > 1.01 * asked : *settings.mesh.fit_triangles < wanted;
+  rays.emplace(p.patches);
+  const Lights lights = to_local_frame(scene.lights, p.patches.origin);
+  p.lit_sides = find_lit_sides({p.patches, *rays, lights}, settings.solve.seed, monitor);
+  make_patches(p.patches, p.lit_sides.wanted);
+  if (p.patches.patch_count() == 0)
+    throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
+  p.map = make_lightmap(p.patches);
+  lap.add_to(seconds.build);
+  return p;
+}
+
+/// The same within the memory limit: with larger elements, and again, until they fit. `settings` end as they are in
+/// force.
+std::optional<Prepared> prepare_to_fit(const Scene& scene, Settings& settings, std::optional<RayScene>& rays,
+                                       RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
+  if (!settings.memory_limit) return prepare(scene, settings, rays, seconds, monitor);
+  const std::size_t limit = *settings.memory_limit, faces = scene.polygons.face_count();
+  const double asked = settings.mesh.max_element.value_or(0), wanted = settings.mesh.target_triangles;
+  std::size_t fit = triangles_that_fit(faces, limit);
+  if (fit == 0) refuse_memory(scene, least_memory({faces, faces, faces, faces, faces}), limit);
+  for (std::size_t last = std::numeric_limits<std::size_t>::max();; fit /= 2) {
+    settings.mesh.fit_triangles = static_cast<double>(fit);
+    std::optional<Prepared> p = prepare(scene, settings, rays, seconds, monitor);
+    if (!p) return {};
+    settings.solve.memory_limit = memory_after_reading(limit, p->repairs);
+    if (has_memory_for(p->patches, p->map, settings.solve)) {
+      const bool coarser = asked > 0 ? p->repairs.max_element > 1.01 * asked : static_cast<double>(fit) < wanted;
       if (coarser)
         console.warn("coarser than asked for, to stay below the memory limit of " + bytes(limit) +
-                     ": elements of up to " + rounded(p.repairs.max_element) + " m" +
+                     ": elements of up to " + rounded(p->repairs.max_element) + " m" +
                      (asked > 0 ? " instead of " + rounded(asked) + " m." : "."));
       return p;
     }
-    const std::size_t triangles = p.repairs.triangles, sides = p.patches.patch_count();
-    if (last > 0 && static_cast<double>(triangles) > 0.9 * static_cast<double>(last))
-      refuse_memory(scene, least_memory({p.repairs.input_triangles, triangles, sides, sides, p.map.position.size()}),
+    const std::size_t triangles = p->repairs.triangles, sides = p->patches.patch_count();
+    if (triangles > last / 10 * 9)
+      refuse_memory(scene, least_memory({p->repairs.input_triangles, triangles, sides, sides, p->map.position.size()}),
                     limit);
     last = triangles;
-    *settings.mesh.fit_triangles /= 2;
   }
 }
 
@@ -142,7 +143,7 @@ std::optional<Prepared> prepare(const Scene& scene, Settings& settings, std::opt
 std::optional<Solved> solve_scene(const Scene& scene, Settings settings, std::span<const SensorPoint> sensors,
                                   RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
   std::optional<RayScene> rays;
-  std::optional<Prepared> prepared = prepare(scene, settings, rays, seconds, console, monitor);
+  std::optional<Prepared> prepared = prepare_to_fit(scene, settings, rays, seconds, console, monitor);
   if (!prepared) return {};
   auto& [patches, repairs, lit_sides, lightmap] = *prepared;
   const Lights lights = with_mirror_images(to_local_frame(scene.lights, patches.origin), *rays);

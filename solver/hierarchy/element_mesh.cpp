@@ -196,6 +196,11 @@ std::vector<std::uint32_t> ElementMesh::leaves() const {
   return leaves;
 }
 
+std::size_t ElementMesh::leaves_under(std::uint32_t e) const {
+  const std::uint32_t first = elements_[e].first_half;
+  return elements_[e].is_leaf() ? 1 : leaves_under(first) + leaves_under(first + 1);
+}
+
 PatchSet ElementMesh::leaf_patches() const {
   const std::vector<std::uint32_t> leaf = leaves();
   const std::size_t n = leaf.size();

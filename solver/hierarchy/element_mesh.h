@@ -51,6 +51,8 @@ class ElementMesh {
 
   /// Elements that are leaves, patch by patch: element of leaf patch i.
   std::vector<std::uint32_t> leaves() const;
+  /// Leaves that element e is now; they follow each other in leaves().
+  std::size_t leaves_under(std::uint32_t e) const;
   /// The leaves as patches in that order, each on a triangle of its own; `splits` tells rays which leaf they meet.
   PatchSet leaf_patches() const;
   /// Lightmap of leaf_patches(), made of the mesh's own points; E is sized P x channels and zero.

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/hierarchy/build_tree.h"
+#include "solver/hierarchy/bundle_net.h"
 #include "solver/hierarchy/gather_links.h"
+#include "solver/hierarchy/receivers.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -19,52 +20,11 @@ namespace clerestory {
 namespace {
 
 constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92;
-constexpr double kMostOwed = 0.1;  // of the limit for one link: a row may not drift by more while it is cut
-constexpr std::uint32_t kMostMembers = 32;
+constexpr double kMostOwed = 0.1;         // of the limit for one link: a row may not drift by more while it is cut
 constexpr int kZones = 6, kSectors = 12;  // parts of the sphere
 constexpr std::size_t kParts = kZones * kSectors;
 constexpr std::size_t kReceiversInBlock = 64;
 constexpr std::size_t kNeighbours = 8;  // hits of a receiver that tell which space it is in
-
-/// Whether v is a cluster of few patches, none of which was worth halving.
-bool is_small(const ElementTree& tree, std::uint32_t v) {
-  if (tree.leaf_end(v) - tree.first_leaf(v) > kMostMembers) return false;
-  for (std::uint32_t below = v; below < tree.end[v]; ++below)
-    if (!tree.is_leaf(below) && !tree.cluster[below]) return false;
-  return true;
-}
-
-/// Receivers in tree order: clusters within the diameter, and the leaves outside of them.
-std::vector<Receiver> clusters_within(double diameter, const ElementTree& tree, const std::vector<Sphere>& spheres) {
-  std::vector<Receiver> receivers;
-  for (std::uint32_t v = 0; v < tree.size();) {
-    const std::uint32_t first = tree.first_leaf(v), last = tree.leaf_end(v);
-    const bool leaf = tree.is_leaf(v);
-    if (leaf || (diameter > 0 && 2 * spheres[v].radius <= diameter && is_small(tree, v))) {
-      receivers.push_back({first, last, 1, !leaf});
-      v = tree.end[v];
-    } else {
-      ++v;
-    }
-  }
-  return receivers;
-}
-
-/// With a diameter that grows until there are few enough of them.
-std::vector<Receiver> choose_receivers(const ElementTree& tree, const PatchSet& patches, const LinkOptions& options) {
-  if (!(options.cluster_diameter > 0)) return clusters_within(0, tree, {});
-  const std::vector<Sphere> spheres = bounding_spheres(tree, patches);
-  std::vector<Receiver> receivers = clusters_within(options.cluster_diameter, tree, spheres);
-  double diameter = options.cluster_diameter;
-  for (std::size_t before = receivers.size() + 1; receivers.size() > options.most_receivers;) {
-    diameter *= 1.5;
-    std::vector<Receiver> fewer = clusters_within(diameter, tree, spheres);
-    if (fewer.size() == before) break;
-    before = receivers.size();
-    receivers = std::move(fewer);
-  }
-  return receivers;
-}
 
 /// Parts of the sphere that a cluster tells apart: zones of equal height in equal sectors.
 std::uint16_t part_of_sphere(const Vec3& d) {
@@ -73,38 +33,6 @@ std::uint16_t part_of_sphere(const Vec3& d) {
   const int sector = std::clamp(static_cast<int>(turn * kSectors), 0, kSectors - 1);
   return static_cast<std::uint16_t>(zone * kSectors + sector);
 }
-
-/// Points of a bundle, of place and direction: a net in four dimensions, made once. Each receiver shifts it by its own
-/// random digits, which keeps its strata. Points are in the order of 2 x 2, 4 x 4, ... cells of direction; the shift
-/// only swaps cells, so sixteen in a row still go about the same way.
-class Net {
- public:
-  explicit Net(int count, std::uint64_t seed) {
-    for (int k = 0; k < count; ++k) {
-      const auto u = sobol4(static_cast<std::uint32_t>(k), seed);
-      Point& x = points_.emplace_back();
-      for (std::size_t d = 0; d < 4; ++d) x[d] = static_cast<std::uint32_t>(u[d] * 0x1p32);
-    }
-    std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return cell(a) < cell(b); });
-  }
-  std::array<double, 4> operator()(std::size_t k, std::uint64_t key) const {
-    const std::uint64_t a = mix_bits(key), b = mix_bits(key + 0x9e3779b97f4a7c15ULL);
-    const Point& x = points_[k];
-    return {unit(x[0] ^ low(a)), unit(x[1] ^ high(a)), unit(x[2] ^ low(b)), unit(x[3] ^ high(b))};
-  }
-
- private:
-  using Point = std::array<std::uint32_t, 4>;
-  static constexpr std::uint32_t low(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
-  static constexpr std::uint32_t high(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
-  static constexpr double unit(std::uint32_t x) { return static_cast<double>(x) * 0x1p-32; }
-  static std::uint64_t cell(const Point& x) {
-    std::uint64_t code = 0;
-    for (int bit = 31; bit >= 0; --bit) code = code << 2 | (x[0] >> bit & 1u) << 1 | (x[1] >> bit & 1u);
-    return code;
-  }
-  std::vector<Point> points_;
-};
 
 /// Light on its way into a receiver.
 struct Arrival {
@@ -124,8 +52,8 @@ double shared_weight(double cos_p, double own, double other) {
 /// One receiver after another; holds the memory they need in turn.
 class Tracer {
  public:
-  Tracer(const Illumination& light, const ElementTree& tree, const Net& net, const NodeLight* nodes, const Field& E,
-         const LinkOptions& options)
+  Tracer(const Illumination& light, const ElementTree& tree, const BundleNet& net, const NodeLight* nodes,
+         const Field& E, const LinkOptions& options)
       : light_(light),
         tree_(tree),
         net_(net),
@@ -413,7 +341,7 @@ class Tracer {
 
   const Illumination& light_;
   const ElementTree& tree_;
-  const Net& net_;
+  const BundleNet& net_;
   const NodeLight* nodes_;
   const Field& E_;
   const LinkOptions& options_;
@@ -463,8 +391,9 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   transport.arrives.resize(n), transport.escapes.resize(n);
   NodeLight nodes;
   if (B.size() == n) nodes = node_light(tree, B);
-  const Net net(options.bundle_rays, stream_key(options.seed, kBundle));
-  const std::vector<Receiver> receivers = choose_receivers(tree, patches, options);
+  const BundleNet net(options.bundle_rays, stream_key(options.seed, kBundle));
+  const std::vector<Receiver> receivers =
+      choose_receivers(tree, patches, options.cluster_diameter, options.most_receivers);
   std::array<std::uint32_t, kNeighbours> nobody;
   nobody.fill(PatchId::kNone);
   std::vector<std::array<std::uint32_t, kNeighbours>> neighbours(receivers.size(), nobody);
@@ -501,7 +430,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
 
 std::vector<BundleRay> trace_bundle(const Illumination& light, const ElementTree& tree, const Receiver& receiver,
                                     const LinkOptions& options) {
-  const Net net(options.bundle_rays, stream_key(options.seed, kBundle));
+  const BundleNet net(options.bundle_rays, stream_key(options.seed, kBundle));
   return Tracer(light, tree, net, nullptr, {}, options).bundle(receiver);
 }
 

@@ -41,7 +41,8 @@ class Gatherer {
         pattern_(options.quality, options.seed),
         mesh_(mesh),
         pilots_(wants_pilot(light_, pattern_)),
-        worth_(worth_a_gather(mesh, options.most_points)) {}
+        worth_(worth_a_gather(mesh, options.most_points)),
+        shares_(pilots_ ? mesh.points().position.size() : 0) {}
 
   /// False when the monitor stopped it.
   bool gather(VertexField& field, const Monitor& monitor) {
@@ -52,12 +53,8 @@ class Gatherer {
     field.small_lights.value.resize(field.E.value.size());
     field.noise.resize(end);
     field.known.resize(end);
-    if (pilots_) {
-      const std::size_t own = pilot_of_.empty() ? end : pilot_of_.size();
-      for (std::size_t p = pilot_of_.size(); p < end; ++p)
-        pilot_of_.push_back(p < own ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
-      shares_.resize(own);
-    }
+    for (std::size_t p = begin; p < end && pilots_; ++p)
+      pilot_of_.push_back(p < shares_.size() ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
     std::vector<unsigned long long> rays(end - begin, 0);
     constexpr std::size_t kBlock = 1024;
     for (std::size_t first = begin; first < end; first += kBlock) {
@@ -81,14 +78,9 @@ class Gatherer {
     PointLight mean;
     for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
       const Vec3 n = at.sample_normal[s], x = at.sample_position[s] + n * light_.problem.rays.lift();
+      if (pilots_ && pilot_of_[p] == p && shares_[p].empty()) shares_[p] = share_rays(light_, x, n, pattern_, rays);
       static const RayShares kNone;
-      const RayShares* shares = &kNone;
-      if (pilots_) {
-        RayShares& own = shares_[pilot_of_[p]];
-        if (own.empty() && pilot_of_[p] == p) own = share_rays(light_, x, n, pattern_, rays);
-        shares = &own;
-      }
-      const PointLight here = gather_point(light_, x, n, pattern_, *shares, rays);
+      const PointLight here = gather_point(light_, x, n, pattern_, pilots_ ? shares_[pilot_of_[p]] : kNone, rays);
       mean.E += here.E * at.sample_weight[s];
       mean.small_lights += here.small_lights * at.sample_weight[s];
       mean.noise += here.noise * at.sample_weight[s];
@@ -104,7 +96,7 @@ class Gatherer {
   bool pilots_;
   std::vector<bool> worth_;              ///< by point of the mesh as it was at first
   std::vector<std::uint32_t> pilot_of_;  ///< by point: the one that sent a pilot for it
-  std::vector<RayShares> shares_;        ///< by point that sent a pilot
+  std::vector<RayShares> shares_;        ///< by point of the mesh as it was at first
 };
 
 /// Gradient at each point of what E is there, averaged over the leaves around it.

@@ -21,14 +21,10 @@
 namespace clerestory {
 namespace {
 
-constexpr int kMostRounds = 4;         // of coarse solves before the last one
-constexpr double kWorthAnother = 1.3;  // growth of the leaves that makes a coarse solve on them worth its rays
-constexpr double kWorthAnotherMerged = 1.01;
-constexpr double kReceivers = 200'000;      // faces finer than this share of the area receive in clusters
-constexpr double kStakeByTolerance = 1e-4;  // flux at stake of `bf`, as a share of tolerance times all emitted flux
-/// Below this much memory of links [bytes] every hit keeps a link of its own: nodes hide what is darker or brighter in
-/// them than was known when the links were made, and a room lit by a spot on its ceiling loses 1 % by that.
-constexpr double kLinksToSpare = 256e6;
+constexpr int kMostRounds = 4;                // of coarse solves before the last one
+constexpr double kWorthAnother = 1.3;         // growth of the leaves that makes a coarse solve on them worth its rays
+constexpr double kWorthAnotherMerged = 1.01;  // the same where nodes are linked: halves must be solved first
+constexpr double kStakeByTolerance = 1e-4;    // flux at stake of `bf`, as a share of tolerance times all emitted flux
 /// Rays of all bundles, and of all pairs, in one round: seconds of a core. Beyond, receivers get fewer, as a wrong one
 /// among so many does little harm.
 constexpr double kMostRays = 1.5e7;
@@ -58,8 +54,7 @@ Quality full(const HierarchyOptions& o, std::size_t leaves) {
 }
 
 bool merges(std::size_t leaves, const LinkOptions& links) {
-  const double most = static_cast<double>(leaves) * (links.bundle_rays + links.lamp_rays);
-  return most * sizeof(Link) > kLinksToSpare;
+  return static_cast<double>(leaves) * (links.bundle_rays + links.lamp_rays) > kLinksToSpare;
 }
 
 /// What one round hands to the next: the light on the leaves as they were.
@@ -72,18 +67,13 @@ struct Round {
   bool complete = false;
 };
 
-std::size_t leaves_under(const ElementMesh& mesh, std::uint32_t e) {
-  if (mesh[e].is_leaf()) return 1;
-  return leaves_under(mesh, mesh[e].first_half) + leaves_under(mesh, mesh[e].first_half + 1);
-}
-
 /// What was found for the elements that were leaves, on the leaves of now: halves inherit. Both are in the order of the
 /// mesh.
 Field inherited(const Field& B, std::span<const std::uint32_t> were_leaves, const ElementMesh& mesh) {
   Field out(mesh.leaf_count(), B.channels);
   std::size_t leaf = 0;
   for (std::size_t i = 0; i < were_leaves.size(); ++i)
-    for (std::size_t k = leaves_under(mesh, were_leaves[i]); k > 0; --k) out.set(leaf++, B[i]);
+    for (std::size_t k = mesh.leaves_under(were_leaves[i]); k > 0; --k) out.set(leaf++, B[i]);
   return out;
 }
 
@@ -120,7 +110,7 @@ Field above_ground(const PatchSet& leaves, const Field& B, const Round& round) {
 double receiver_size(const PatchSet& patches, double shortest_edge) {
   const double n = static_cast<double>(std::max<std::size_t>(patches.patch_count(), 1));
   const double area = patches.total_area();
-  return std::max({shortest_edge, 0.5 * std::sqrt(area / n), std::sqrt(area / kReceivers)});
+  return std::max(shortest_edge, 0.5 * std::sqrt(area / n));
 }
 
 std::string round_line(const char* what, const Solution& s, std::size_t leaves, std::size_t receivers) {
@@ -156,7 +146,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   const ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
-  const double receivers = std::min(static_cast<double>(n), kReceivers);
+  const auto receivers = static_cast<double>(std::min(n, quality.links.most_receivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.lamp_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;

@@ -38,9 +38,9 @@ struct PolygonSoup {
 /// Settings a scene file may hold under "solver"; a command line option wins over them.
 struct SolverSettings {
   std::optional<std::string> method, accuracy;
-  std::optional<double> max_element;   ///< [m]
-  std::optional<double> target_error;  ///< RMS relative [1]
-  std::optional<double> time_limit;    ///< [s]
+  std::optional<double> max_element;        ///< [m]
+  std::optional<double> target_error;       ///< RMS relative [1]
+  std::optional<double> time_limit;         ///< [s]
   std::optional<std::size_t> memory_limit;  ///< of the whole process [bytes]
   std::optional<std::uint64_t> seed;
 };

@@ -36,8 +36,8 @@ struct Solution {
   double residual = 0;  ///< unshot or changed flux / emitted flux [1]
   unsigned long long rays = 0;
   std::size_t clusters = 0, links = 0;  ///< of the hierarchy, where there is one
-  double flux_per_ray = 0;       ///< carried by a ray of a shot; sets the noise of shooting [W]
-  std::vector<std::string> log;  ///< a line a round, for --verbose
+  double flux_per_ray = 0;              ///< carried by a ray of a shot; sets the noise of shooting [W]
+  std::vector<std::string> log;         ///< a line a round, for --verbose
 };
 
 }  // namespace clerestory

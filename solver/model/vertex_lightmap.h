@@ -18,10 +18,10 @@ struct VertexLightmap {
   /// around corners and rims too; kNone at an open end.
   std::vector<std::array<std::uint32_t, 3>> neighbour;
   static constexpr std::uint32_t kNone = 0xffffffff;
-  std::vector<Vec3> position;                         ///< P, local frame of the PatchSet [m]
-  std::vector<std::uint32_t> patch_of_point;          ///< P, one of the patches that share the point
-  Field E;                                            ///< P, irradiance [W/m2]; filled after the solve
-  Field std_error;                                    ///< P, standard error of E; empty unless E is a random estimate
+  std::vector<Vec3> position;                 ///< P, local frame of the PatchSet [m]
+  std::vector<std::uint32_t> patch_of_point;  ///< P, one of the patches that share the point
+  Field E;                                    ///< P, irradiance [W/m2]; filled after the solve
+  Field std_error;                            ///< P, standard error of E; empty unless E is a random estimate
 
   // Where irradiance is gathered, S samples: one for each direction that the facets around a point face, so one for a
   // point of a flat surface. Point p has samples sample_begin[p] .. sample_begin[p + 1] - 1, of weights that sum to 1.

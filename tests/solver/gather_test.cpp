@@ -22,7 +22,8 @@ TEST(GatherPoint, IsExactInAFurnace) {
   Field B(patches.patch_count(), 1);
   for (double& b : B.value) b = 6;
   unsigned long long traced = 0;
-  const Spectrum E = gather_point(Illumination(problem, B), {0.5, 0.5, rays.lift()}, {0, 0, 1}, GatherPattern({}, 1), traced).E;
+  const Spectrum E =
+      gather_point(Illumination(problem, B), {0.5, 0.5, rays.lift()}, {0, 0, 1}, GatherPattern({}, 1), traced).E;
   EXPECT_NEAR(E[0], 6, 1e-9);
 }
 

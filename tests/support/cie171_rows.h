@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/model/vec.h"
+#include "tests/support/csv_rows.h"
 
 namespace clerestory::test {
 
@@ -23,16 +24,7 @@ inline std::vector<Cie171Row> cie171_rows(const std::string& test_case) {
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
-    std::vector<std::string> cells(1);
-    bool quoted = false;
-    for (const char c : line) {
-      if (c == '"')
-        quoted = !quoted;
-      else if (c == ',' && !quoted)
-        cells.emplace_back();
-      else
-        cells.back() += c;
-    }
+    const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() < 13 || cells[0] != test_case) continue;
     const auto number = [&](std::size_t k) { return cells[k].empty() ? 0.0 : std::stod(cells[k]); };
     Cie171Row row{

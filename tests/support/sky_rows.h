@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/csv_rows.h"
+
 namespace clerestory::test {
 
 struct SkyRow {
@@ -19,16 +21,7 @@ inline std::vector<SkyRow> sky_rows(const std::string& group) {
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
-    std::vector<std::string> cells(1);
-    bool quoted = false;
-    for (const char c : line) {
-      if (c == '"')
-        quoted = !quoted;
-      else if (c == ',' && !quoted)
-        cells.emplace_back();
-      else
-        cells.back() += c;
-    }
+    const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() > 5 && cells[0] == group)
       rows.push_back({cells[0], cells[1], cells[2], cells[3], std::stod(cells[5])});
   }

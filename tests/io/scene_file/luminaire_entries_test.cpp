@@ -76,9 +76,9 @@ TEST_F(Luminaires, RefusalsNameTheEntryAndTheKey) {
             "room.obj: the extension '.obj' is no photometric file's; .ies (IESNA LM-63) and .ldt (EULUMDAT) are read");
   EXPECT_EQ(refused(R"({ "file": "lamp.ies", "position": [0, 0, 3], "aim": [0, 0, 0] })"),
             "s.json: luminaires[0].aim = [0, 0, 0] has no direction");
-  EXPECT_EQ(
-      refused(R"({ "file": "lamp.ies", "position": [0, 0, 3], "maintenance_factor": 1.2 })"),
-      "s.json: luminaires[0].maintenance_factor = 1.2 is outside (0, 1]; it is what is left of the light of new lamps.");
+  EXPECT_EQ(refused(R"({ "file": "lamp.ies", "position": [0, 0, 3], "maintenance_factor": 1.2 })"),
+            "s.json: luminaires[0].maintenance_factor = 1.2 is outside (0, 1]; it is what is left of the light of new "
+            "lamps.");
   EXPECT_EQ(refused(R"({ "file": "lamp.ies" })"), "s.json: luminaires[0].position is missing");
   folder_.write("dark.ies", "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n0 0\n");
   EXPECT_EQ(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/model/vec.h"
+#include "tests/support/csv_rows.h"
 
 namespace clerestory::test {
 
@@ -51,16 +52,7 @@ inline std::vector<ReferenceRow> reference_rows() {
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
-    std::vector<std::string> cells(1);
-    bool quoted = false;
-    for (const char c : line) {
-      if (c == '"')
-        quoted = !quoted;
-      else if (c == ',' && !quoted)
-        cells.emplace_back();
-      else
-        cells.back() += c;
-    }
+    const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() < 11) continue;
     ReferenceRow row{
         cells[0], cells[1], cells[2], cells[3], std::stod(cells[4]), read_polygon(cells[8]), read_polygon(cells[9]),

@@ -44,8 +44,7 @@ TEST(GatherField, ATighterToleranceInterpolatesBetter) {
   const MeshedRoom room(testing::room_with_box(), 0.6);
   // Walls that shine as in a lit room, brighter at the top: shadows at the box, no edge that is sharp.
   Field B(room.patches.patch_count(), 1);
-  for (std::size_t p = 0; p < B.size(); ++p)
-    B.set(p, Spectrum(3 + room.patches.corner_positions(PatchId{p})[0].z));
+  for (std::size_t p = 0; p < B.size(); ++p) B.set(p, Spectrum(3 + room.patches.corner_positions(PatchId{p})[0].z));
   double before = 1;
   for (const double tolerance : {0.2, 0.05, 0.02}) {
     ElementMesh mesh(room.patches, room.map);

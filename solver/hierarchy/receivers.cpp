@@ -1,0 +1,42 @@
+#include "solver/hierarchy/receivers.h"
+
+#include "solver/hierarchy/build_tree.h"
+
+namespace clerestory {
+namespace {
+
+/// Whether v is a cluster of few patches, none of which was worth halving.
+bool is_small(const ElementTree& tree, std::uint32_t v) {
+  if (tree.leaf_end(v) - tree.first_leaf(v) > kMostMembers) return false;
+  for (std::uint32_t below = v; below < tree.end[v]; ++below)
+    if (!tree.is_leaf(below) && !tree.cluster[below]) return false;
+  return true;
+}
+
+std::vector<Receiver> within(double diameter, const ElementTree& tree, const std::vector<Sphere>& spheres) {
+  std::vector<Receiver> receivers;
+  for (std::uint32_t v = 0; v < tree.size();) {
+    const bool leaf = tree.is_leaf(v);
+    if (leaf || (diameter > 0 && 2 * spheres[v].radius <= diameter && is_small(tree, v))) {
+      receivers.push_back({tree.first_leaf(v), tree.leaf_end(v), 1, !leaf});
+      v = tree.end[v];
+    } else {
+      ++v;
+    }
+  }
+  return receivers;
+}
+
+}  // namespace
+
+std::vector<Receiver> choose_receivers(const ElementTree& tree, const PatchSet& patches, double diameter,
+                                       std::size_t most) {
+  if (!(diameter > 0)) return within(0, tree, {});
+  const std::vector<Sphere> spheres = bounding_spheres(tree, patches);
+  std::vector<Receiver> receivers = within(diameter, tree, spheres);
+  while (receivers.size() > most && diameter < 2 * spheres[0].radius)
+    receivers = within(diameter *= 1.5, tree, spheres);
+  return receivers;
+}
+
+}  // namespace clerestory

@@ -22,10 +22,6 @@ Enum named(const std::string& name, std::span<const std::string_view> names) {
   return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-void refuse_if(const std::string& file, const std::string& problem) {
-  if (!problem.empty()) throw InputError(file + ": solver." + problem);
-}
-
 template <class T>
 std::optional<T> first_of(const std::optional<T>& a, const std::optional<T>& b) {
   return a ? a : b;
@@ -43,14 +39,9 @@ std::string problem_with_memory(const std::string& size) {
 Settings effective_settings(const CommonArguments& common, const SolveArguments& arguments, const Scene& scene) {
   const SolverSettings& file = scene.settings;
   Settings s;
-  if (const auto name = first_of(arguments.method, file.method)) {
-    refuse_if(scene.file, problem_with_method(*name));
-    s.solve.method = named<Method>(*name, kMethodNames);
-  }
-  if (const auto name = first_of(arguments.accuracy, file.accuracy)) {
-    refuse_if(scene.file, problem_with_accuracy(*name));
+  if (const auto name = first_of(arguments.method, file.method)) s.solve.method = named<Method>(*name, kMethodNames);
+  if (const auto name = first_of(arguments.accuracy, file.accuracy))
     s.solve.accuracy = named<Accuracy>(*name, kAccuracyNames);
-  }
   s.solve.seed = first_of(common.seed, file.seed).value_or(s.solve.seed);
   s.mesh.max_element = first_of(arguments.max_element, file.max_element);
   s.mesh.target_triangles = target_triangles(s.solve.method, s.solve.accuracy);

@@ -41,7 +41,7 @@ std::string problem_with_accuracy(const std::string& name);
 /// Why a text is no amount of memory; empty when it is.
 std::string problem_with_memory(const std::string& size);
 
-/// throws  InputError naming the method or accuracy that is not known, and the nearest one.
+/// Names are known ones: readers of options and scenes refuse others.
 Settings effective_settings(const CommonArguments& common, const SolveArguments& arguments, const Scene& scene);
 
 /// The settings as the report and the result name them.

@@ -60,7 +60,7 @@ struct StoredBoxes {
 
 /// Static tree over boxes that box_of(i), i < n, gives: of millions of points or faces no box need be stored.
 /// Boxes are put in the order of their centres' Morton codes, then halved by number. Visits in a fixed order, so what
-/// is found does not depend on threads. Cost: O(n log n), 16 bytes a box.
+/// is found does not depend on threads. Cost: O(n log n), 40 bytes a box.
 template <class BoxOf>
 class BoxTree {
  public:

@@ -17,7 +17,7 @@ struct MeshOptions {
 };
 
 struct MeshedScene {
-  PatchSet patches;  ///< both sides of every triangle but glass; dark sides are dropped later, by rays
+  PatchSet patches;  ///< both sides of every triangle but of glass and mirrors; dark sides are dropped later, by rays
   MeshReport report;
 };
 

@@ -23,7 +23,7 @@ struct PointIrradiance {
   Field E;
   Field std_error;  ///< of E; empty unless the method is `path`
   unsigned long long rays = 0;
-  bool complete = true;  ///< false: stopped early, the remaining points hold the value of their patch (sensors: 0)
+  bool complete = true;  ///< false: stopped early, the remaining points hold 0
 };
 
 /// At each sensor point itself, by gather_point(); `path` estimates it by paths instead.

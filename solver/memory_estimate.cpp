@@ -23,7 +23,7 @@ namespace {
 //   house, 100 mm          603    542,961  554,532    538,836 286,042 14,767,515     639.9      733
 // (Two threads, one or three channels.)
 constexpr double kProgram = 27 << 20;
-constexpr double kInputTriangle = 230, kTriangle = 400, kSide = 350, kElement = 200, kPoint = 260, kLink = 10;  // [B]
+constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 200, kPoint = 260, kLink = 10;  // [B]
 
 constexpr int kFewestRays = 32;
 constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all that was measured

@@ -1,6 +1,5 @@
 // clerestory solve: the main job, from a model and its light to a picture of where the light goes.
 
-#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <new>
@@ -233,18 +232,13 @@ ExitCode exit_code(const Solved& solved, const Settings& settings) {
   return kDone;
 }
 
-/// The last round that was finished before the clock or Ctrl-C, in the words of the log: ": early picture by ...".
-std::string what_is_shown(const Solution& solution) {
-  const auto stopped = std::find(solution.log.begin(), solution.log.end(), "stopped early");
-  return stopped == solution.log.begin() || stopped == solution.log.end() ? "" : ": " + *(stopped - 1);
-}
-
 void say_why(ExitCode code, const Solved& solved, const Settings& settings, Console& console) {
   if (code == kInterrupted) console.warn("interrupted; what was solved so far is written.");
   if (code != kAccuracyNotReached) return;
   if (solved.solution.stop == StopReason::time_limit)
     console.warn("the time limit of " + rounded(settings.time_limit.value_or(0)) +
-                 " s came before the end; the result so far is written" + what_is_shown(solved.solution) + ".");
+                 " s came before the end; the result so far is written" +
+                 (solved.solution.shown.empty() ? "" : ": " + solved.solution.shown) + ".");
   else if (solved.solution.stop == StopReason::iteration_limit)
     console.warn("the method stopped before it converged, at a residual of " + percent(solved.solution.residual) +
                  "; the result so far is written.");

@@ -33,8 +33,6 @@ struct Range {
 };
 
 inline constexpr Range kFinite{};
-inline constexpr Range kNotNegative{.low = 0};
-inline constexpr Range kPositive{.low = 0, .low_allowed = false};
 /// Of positions and lengths in a scene, as of the corners of models and the rows of sensor files.
 inline constexpr Range kCoordinate{.low = -1e12, .high = 1e12, .advice = "positions are in metres"};
 /// Of every quantity of light in its own unit: what is more is a mistake, and would not fit into the result's floats.

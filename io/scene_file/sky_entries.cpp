@@ -67,7 +67,7 @@ struct HourOfDaylight {
   double direct_normal = 0, diffuse_horizontal = 0;                 ///< [W/m2]
   std::optional<double> direct_normal_lux, diffuse_horizontal_lux;  ///< measured [lx]
   double precipitable_water = 2;                                    ///< [cm]
-  std::optional<WeatherHour> from_file;
+  std::optional<int> line;                                          ///< of the weather file
 };
 
 SkyEntries read_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels) {
@@ -114,7 +114,10 @@ void warn_of_idle_keys(const JsonObject& sky, SkyModel model, std::vector<std::s
   if (model != SkyModel::cie_general) idle({"type"}, by_model);
   if (model != SkyModel::perez)
     idle({"direct_normal", "diffuse_horizontal", "dew_point", "precipitable_water"}, by_model);
+  if (model == SkyModel::perez)
+    idle({"horizontal_illuminance"}, by_model + ": its light comes from diffuse_horizontal");
   if (model != SkyModel::image) idle({"image", "rotation"}, by_model);
+  if (sky.has("weather")) idle({"dew_point", "precipitable_water"}, "beside \"weather\", which has its own");
   if (!sky.has("weather")) idle({"day_of_year", "hour"}, "without \"weather\"");
 }
 
@@ -217,7 +220,7 @@ HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, co
     light.precipitable_water = precipitable_water(*found.dew_point_c);
   else
     light.precipitable_water = found.precipitable_water_cm.value_or(light.precipitable_water);
-  light.from_file = found;
+  light.line = found.line;
   return light;
 }
 
@@ -263,8 +266,8 @@ void add_illuminances(HourOfDaylight& light, const SkyMeasurement& measured, con
   };
   complete(light.direct_normal_lux, light.direct_normal, direct_efficacy(measured));
   complete(light.diffuse_horizontal_lux, light.diffuse_horizontal, diffuse_efficacy(measured));
-  if (derived && light.from_file) {
-    warnings.push_back(text(file, ":", light.from_file->line, ": has no illuminances for this hour; they are derived ",
+  if (derived && light.line) {
+    warnings.push_back(text(file, ":", *light.line, ": has no illuminances for this hour; they are derived ",
                             "from its radiation by the efficacies of Perez (1990)"));
   }
 }
@@ -372,17 +375,12 @@ void read_sky_entries(const JsonObject& root, const std::string& file_name, cons
                             .day_of_year = std::nullopt,
                             .precipitable_water = hour->precipitable_water};
     if (at.time) measured.day_of_year = day_of_year(*at.time);
-    add_illuminances(*hour, measured, hour->from_file ? short_name(*object->word("weather")) : "", warnings);
+    add_illuminances(*hour, measured, hour->line ? short_name(*object->word("weather")) : "", warnings);
     sky.horizontal_irradiance = Spectrum(*hour->diffuse_horizontal_lux / kWhiteEfficacy);
     if (sky.model == SkyModel::perez) sky.shape = perez_shape(measured);
-    if (object->has("horizontal_illuminance")) {
-      warnings.push_back(text(object->place("horizontal_illuminance"),
-                              " is not used by the sky perez: its light comes ", "from diffuse_horizontal"));
-    }
   }
   if (object && sky.model == SkyModel::image) {
     set_image(*object, folder, at.north_deg, sky, channels, warnings);
-    sun_used = at.north_deg != 0;
   } else if (object && !hour) {
     set_illuminance(*object, sky, channels, warnings);
   }
@@ -410,7 +408,7 @@ void read_sky_entries(const JsonObject& root, const std::string& file_name, cons
             *to_sun, computed, file_name, lights, warnings);
     sun_used = true;
   }
-  if ((at.time || root.has("location")) && !(sun_used && computed) && !(sun_used && sky.image) && !hour) {
+  if ((at.time || root.has("location")) && !hour && !(sun_used && computed) && !(sky.image && at.north_deg != 0)) {
     warnings.push_back(file_name + ": location and time are not used: sky and sun are given as they are");
   }
 }

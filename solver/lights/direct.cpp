@@ -36,12 +36,16 @@ class PatchSampler {
 
   const Vec3& normal() const { return normal_; }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
-  bool any_corner(const auto& predicate) const { return std::any_of(corners_.begin(), corners_.end(), predicate); }
+  /// Whether any of the lamp may be in front of any of the patch.
+  bool faces(const auto& lamp) const {
+    return std::any_of(corners_.begin(), corners_.end(),
+                       [&](const Vec3& c) { return dot(normal_, lamp.position - c) > -reach(lamp); });
+  }
 
   /// What the lamp can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
   template <class Lamp>
   double estimate(const Lamp& lamp) const {
-    if (!any_corner([&](const Vec3& c) { return dot(normal_, lamp.position - c) > -reach(lamp); })) return 0;
+    if (!faces(lamp)) return 0;
     const Vec3 middle = centre();
     double sum = 0, size2 = 0;
     for (const Vec3& p : {corners_[0], corners_[1], corners_[2], middle}) {
@@ -130,8 +134,7 @@ class PatchSampler {
 
 template <class Lamp>
 Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
-  if (!patch.any_corner([&](const Vec3& c) { return dot(patch.normal(), lamp.position - c) > -reach(lamp); }))
-    return Spectrum(0.0);
+  if (!patch.faces(lamp)) return Spectrum(0.0);
   return patch.mean(
       lamp.mirror, [&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
       [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); },
@@ -220,12 +223,8 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
 }
 
 /// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
-struct LampBalance {
-  double emitted = 0, escaped = 0, absorbed = 0;
-};
-
 template <class Lamp>
-LampBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t rays, std::uint64_t key) {
+EnergyBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t rays, std::uint64_t key) {
   if (lamp.mirror != kNoMirror) return {};  // mirrors turn the lamp's own rays
   double sent = 0, arrived = 0, escaped = 0;
   for (std::uint32_t k = 0; k < rays; ++k) {
@@ -241,8 +240,8 @@ LampBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t rays
     if (hit.patch.valid()) arrived += I * luminous_mean(hit.transmittance);
   }
   const double flux = luminous_mean(power(lamp));
-  if (!(sent > 0)) return {flux, 0, 0};
-  return {flux, flux * escaped / sent, flux * (sent - arrived - escaped) / sent};
+  if (!(sent > 0)) return {.emitted = flux};
+  return {.emitted = flux, .absorbed = flux * (sent - arrived - escaped) / sent, .escaped = flux * escaped / sent};
 }
 
 /// Many lamps share the rays of four.
@@ -250,14 +249,14 @@ void balance_lamps(const Problem& problem, DirectLight& direct, const DirectOpti
   const std::size_t count = problem.lights.lamp_count();
   if (count == 0) return;
   const auto rays = static_cast<std::uint32_t>(std::clamp<std::size_t>((1 << 16) / count, 512, 1 << 14));
-  std::vector<LampBalance> balances(count);
+  std::vector<EnergyBalance> balances(count);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number)
       balances[number] = with_lamp(problem.lights, number, [&](const auto& lamp) {
         return balance(problem, lamp, rays, stream_key(options.seed, kLampRays, number));
       });
   });
-  for (const LampBalance& b : balances) {
+  for (const EnergyBalance& b : balances) {
     direct.energy.emitted += b.emitted;
     direct.energy.escaped += b.escaped;
     direct.energy.absorbed += b.absorbed;

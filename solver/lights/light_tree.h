@@ -24,7 +24,7 @@ enum class Falloff { cosine, none };
 /// Tree of four children a node. At a receiver point p with normal n a child is chosen in proportion to
 ///   power * (bound of cos at p) * (bound of cos at the light) / max(d^2, size^2)
 /// down to one light. A light has probability 0 only where it cannot shine on p's plane.
-/// Cost: building O(m log m); choosing and probability() O(log m). 75 bytes a light.
+/// Cost: building O(m log m); choosing and probability() O(log m). 90 bytes a light.
 /// Source: Conty Estevez & Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018; the bounds
 /// are of boxes here and not of spheres, so that lights in the plane of the receiver weigh nothing.
 class LightTree {

@@ -37,13 +37,21 @@ Vec3 light_point(const Lamp& lamp, const Vec3&, double, double) {
   return lamp.position;
 }
 
-/// Irradiance [W/m2] at point p with unit normal n from the lamp's point q, when nothing blocks: I cos / r2.
+/// What r2 counts as at least [m2].
+template <class Lamp>
+double least_r2(const Lamp&) {
+  return 0;
+}
+
+/// Irradiance [W/m2] at point p with unit normal n from the lamp's point q, when nothing blocks: I cos / r2. The mean
+/// over the points q of an opening is what it gives: each sends the lamp's intensity, so the flux is the lamp's
+/// whatever the distance.
 template <class Lamp>
 Spectrum open_irradiance(const Lamp& lamp, const Vec3& q, const Vec3& p, const Vec3& n) {
   const Vec3 to_lamp = q - p;
   const double r2 = dot(to_lamp, to_lamp), r = std::sqrt(r2), cos_r = dot(n, to_lamp);
   if (!(cos_r > 0)) return Spectrum(0.0);
-  return intensity(lamp, to_lamp / -r) * (cos_r / (r2 * r));
+  return intensity(lamp, to_lamp / -r) * (cos_r / (std::max(r2, least_r2(lamp)) * r));
 }
 /// The same from the lamp's middle.
 template <class Lamp>

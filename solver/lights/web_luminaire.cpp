@@ -103,14 +103,10 @@ Vec3 light_point(const WebLuminaire& lamp, const Vec3& p, double u, double v) {
   return lamp.position + f.along_a * (f.a * a) + f.along_b * (f.b * b);
 }
 
-Spectrum open_irradiance(const WebLuminaire& lamp, const Vec3& q, const Vec3& p, const Vec3& n) {
-  const Vec3 to_lamp = q - p;
-  const double r2 = dot(to_lamp, to_lamp), r = std::sqrt(r2), cos_r = dot(n, to_lamp);
-  if (!(cos_r > 0)) return Spectrum(0.0);
+double least_r2(const WebLuminaire& lamp) {
   const Face f = face(lamp);
   const double strip = std::max(f.a, f.b) / kSmallestShare;  // of an opening that is no more than a line
-  const double least_r2 = std::max(f.a * f.b / (kSmallestShare * std::numbers::pi), strip * strip);
-  return intensity(lamp, to_lamp / -r) * (cos_r / (std::max(r2, least_r2) * r));
+  return std::max(f.a * f.b / (kSmallestShare * std::numbers::pi), strip * strip);
 }
 
 double beam_half_angle(const PhotometricWeb& web) {

@@ -14,8 +14,8 @@ Spectrum power(const WebLuminaire& lamp);
 /// Largest distance of a point of the opening from the centre [m].
 double reach(const WebLuminaire& lamp);
 
-/// How many rays the opening is worth at p: 1 where p is farther away than ten times its largest length, 4 up to five
-/// times, else 16, and up to 256 where p is nearer than that length.
+/// How many rays the opening is worth at p: 1 from ten times its largest length on, 4 from five times on, nearer 16; 64
+/// within one length of the opening, 256 within half of one.
 int opening_rays(const WebLuminaire& lamp, const Vec3& p);
 
 /// Place k of `count` on the opening for light_point(), and its weight; the weights sum to 1. Gauss points: what varies
@@ -29,11 +29,8 @@ OpeningPlace opening_place(const WebLuminaire& lamp, int k, int count);
 /// over the two larger of its three lengths.
 Vec3 light_point(const WebLuminaire& lamp, const Vec3& p, double u, double v);
 
-/// Irradiance [W/m2] at p on a plane of unit normal n when all light comes from q, I cos / r2, and nothing blocks. The
-/// mean over the points q of an opening is what it gives: each point sends the web's intensity, so the flux is the
-/// web's whatever the distance. r counts as no less than the radius of a disc of 1/256 of the opening: no p is dazzled
-/// by one.
-Spectrum open_irradiance(const WebLuminaire& lamp, const Vec3& q, const Vec3& p, const Vec3& n);
+/// r counts as no less than the radius of a disc of 1/256 of the opening: no point is dazzled by one [m2].
+double least_r2(const WebLuminaire& lamp);
 
 /// Half-angle of the cone around the beam axis that holds all light [rad].
 double beam_half_angle(const PhotometricWeb& web);

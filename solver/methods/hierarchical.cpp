@@ -271,6 +271,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   }
   if (!going) {
     out.solution.stop = why_stopped(monitor);
+    if (!log.empty()) out.solution.shown = log.back();
     log.push_back("stopped early");
   }
   if (shown.size() != mesh.leaf_count()) {  // stopped after more were halved

@@ -118,6 +118,8 @@ struct RayScene::Impl {
     }
   }
 
+  double lift() const { return 5e-7 * diameter; }
+
   const Mirror* mirror_at(TriangleId t) const {
     if (!t.valid() || mirror_of_triangle[t] == kNone) return nullptr;
     return &mirrors[mirror_of_triangle[t]];
@@ -147,7 +149,7 @@ struct RayScene::Impl {
       if (!mirror) return;
       const double along = dot(mirror->normal, ray.direction);
       const Vec3 n = along < 0 ? mirror->normal : -mirror->normal;
-      ray = {hit.position(first) + n * (5e-7 * diameter), ray.direction - mirror->normal * (2 * along)};
+      ray = {hit.position(first) + n * lift(), ray.direction - mirror->normal * (2 * along)};
       const Spectrum so_far = hit.transmittance * mirror->reflectance;
       hit = one_leg(patches, ray);
       hit.transmittance *= so_far;
@@ -208,7 +210,7 @@ RayScene::~RayScene() = default;
 bool RayScene::has_mirrors() const { return !impl_->mirrors.empty(); }
 const std::vector<MirrorPlane>& RayScene::mirrors() const { return impl_->planes; }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
-double RayScene::lift() const { return 5e-7 * impl_->diameter; }
+double RayScene::lift() const { return impl_->lift(); }
 double RayScene::diameter() const { return impl_->diameter; }
 
 void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -277,7 +279,7 @@ Spectrum RayScene::transmittance(const Vec3& from, const Vec3& to) const {
   RTCRayHit r = ray_hit(from, to - from, 0, 1);
   rtcOccluded1(impl_->opaque.handle, &c, &r.ray);
   if (r.ray.tfar < 0) return Spectrum(0.0);
-  return has_glass() ? glass_transmittance(from, to) : Spectrum(1.0);
+  return glass_transmittance(from, to);
 }
 
 Spectrum RayScene::transmittance_by_mirror(const Vec3& from, const Vec3& image, std::uint32_t mirror) const {

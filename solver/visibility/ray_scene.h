@@ -21,7 +21,7 @@ struct Hit {
   PatchId patch;                ///< the side it met; invalid when it escaped, or met a side that takes no part
   TriangleId triangle;          ///< invalid when it escaped
   float distance = 0;           ///< along the unit direction [m]
-  Spectrum transmittance{1.0};  ///< of the glass it passed on the way
+  Spectrum transmittance{1.0};  ///< of glass and mirrors on the way
 
   bool reflected = false;  ///< by mirrors on the way
   Ray leg;                 ///< when reflected: the last part of the way; `distance` is its length then

@@ -260,11 +260,14 @@ std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) 
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
   alignas(64) int valid[16];
   RTCRay16 packet;
+  // Without 16 lanes of hardware Embree reads lanes that are not valid too: they must hold numbers.
   for (std::size_t k = 0; k < 16; ++k) {
-    valid[k] = (active >> k) & 1 ? -1 : 0;
-    packet.org_x[k] = s.from_x[k], packet.org_y[k] = s.from_y[k], packet.org_z[k] = s.from_z[k];
-    packet.dir_x[k] = s.to_x[k] - s.from_x[k], packet.dir_y[k] = s.to_y[k] - s.from_y[k];
-    packet.dir_z[k] = s.to_z[k] - s.from_z[k];
+    const bool on = (active >> k) & 1;
+    valid[k] = on ? -1 : 0;
+    packet.org_x[k] = on ? s.from_x[k] : 0, packet.org_y[k] = on ? s.from_y[k] : 0;
+    packet.org_z[k] = on ? s.from_z[k] : 0;
+    packet.dir_x[k] = on ? s.to_x[k] - s.from_x[k] : 0, packet.dir_y[k] = on ? s.to_y[k] - s.from_y[k] : 0;
+    packet.dir_z[k] = on ? s.to_z[k] - s.from_z[k] : 1;
     packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
     packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
   }

@@ -12,19 +12,19 @@ namespace {
 
 enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
 
-GatherQuality quality(const SolveOptions& options, int rays, int most_rays, int lamp_rays, int sun_rays) {
-  const int more = 1 << options.tighten;
-  return {.rays = rays * more, .most_rays = most_rays * more, .lamp_rays = lamp_rays, .sun_rays = sun_rays};
+GatherQuality quality(const SolveOptions& options, RayBudget bundle, RayBudget target, int lamp_rays, int sun_rays) {
+  for (int* rays : {&bundle.rays, &bundle.most_rays, &target.rays, &target.most_rays}) *rays <<= options.tighten;
+  return {bundle, target, lamp_rays, sun_rays};
 }
 
 GatherQuality sensor_quality(const SolveOptions& options) {
   switch (options.accuracy) {
     case Accuracy::draft:
-      return quality(options, 256, 512, 64, 16);
+      return quality(options, {16, 256, 512}, {8, 64, 256}, 64, 16);
     case Accuracy::standard:
-      return quality(options, 256, 2048, 256, 32);
+      return quality(options, {16, 256, 2048}, {16, 256, 2048}, 256, 32);
     case Accuracy::fine:
-      return quality(options, 1024, 8192, 512, 64);
+      return quality(options, {16, 1024, 8192}, {16, 1024, 8192}, 512, 64);
   }
   return {};
 }
@@ -69,15 +69,12 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
 
 GatherQuality vertex_quality(const SolveOptions& options) {
   switch (options.accuracy) {
-    case Accuracy::draft: {
-      GatherQuality coarse = quality(options, 64, 64, 32, 8);
-      coarse.grid = 8;
-      return coarse;
-    }
+    case Accuracy::draft:
+      return quality(options, {8, 64, 64}, {4, 16, 64}, 32, 8);
     case Accuracy::standard:
-      return quality(options, 256, 768, 128, 16);
+      return quality(options, {16, 256, 768}, {8, 64, 256}, 128, 16);
     case Accuracy::fine:
-      return quality(options, 512, 2048, 128, 32);
+      return quality(options, {16, 512, 2048}, {16, 256, 1024}, 128, 32);
   }
   return {};
 }

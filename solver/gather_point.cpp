@@ -7,22 +7,28 @@
 #include <numbers>
 #include <span>
 
+#include "solver/lights/openings.h"
 #include "solver/model/units.h"
+#include "solver/polygon_view.h"
 #include "solver/sampling.h"
 
 namespace clerestory {
 namespace {
 
-/// What comes back along rays, as radiosity: irradiance is its mean over cosine-distributed rays.
-class Bundle {
+constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kMostOpenings = 8;  ///< openings that a point looks through by rays of their own
+
+/// What comes back along rays from one point.
+class View {
  public:
-  Bundle(const Illumination& light, const Vec3& p, const Frame& frame, int lamp_rays)
-      : light_(light), p_(p), frame_(frame), lamp_rays_(lamp_rays) {}
+  View(const Illumination& light, const Vec3& p, const Frame& frame, int lamp_rays,
+       std::span<const std::uint32_t> openings)
+      : light_(light), p_(p), frame_(frame), lamp_rays_(lamp_rays), openings_(openings) {}
 
-  Vec3 direction(const std::array<float, 3>& d) const { return frame_.to_world(d[0], d[1], d[2]); }
-
-  /// Up to 16 rays. density[k]: of bundle rays around ray k as a multiple of cos / pi.
-  void look(std::span<const Vec3> directions, std::span<const double> density, std::span<Spectrum> values) const {
+  /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the openings
+  /// or kNoOpening; 0 along the others. density[k]: rays of that kind per solid angle.
+  void look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
+            std::span<Spectrum> values) const {
     std::array<Ray, 16> rays;
     std::array<Hit, 16> hits;
     for (std::size_t k = 0; k < directions.size(); ++k) rays[k] = {p_, directions[k]};
@@ -31,19 +37,23 @@ class Bundle {
     for (std::size_t k = 0; k < directions.size(); ++k) {
       const Hit& hit = hits[k];
       values[k] = Spectrum(0.0);
+      if (owner_of(directions[k], hit.first) != owner) continue;
       if (hit.escaped()) {
-        values[k] = light_.sky(hit.direction(rays[k])) * std::numbers::pi * hit.transmittance;
+        values[k] = light_.sky(hit.direction(rays[k])) * kPi * hit.transmittance;
       } else if (hit.patch.valid()) {
         Spectrum back = light_.lamps.glow()[hit.patch];
-        if (lamp_rays_ > 0 && !hit.reflected && light_.lamps.is_explicit(hit.patch)) {
+        if (owner == kNoOpening && lamp_rays_ > 0 && !hit.reflected && light_.lamps.is_explicit(hit.patch)) {
           const double cos_patch = -dot(problem.patches.normal[hit.patch], directions[k]);
-          const double bundle = density[k] * dot(frame_.n, directions[k]) / std::numbers::pi;
           const double lamp = lamp_rays_ * light_.lamps.density(hit.patch, p_, frame_.n, hit.distance, cos_patch, true);
-          back *= bundle / (bundle + lamp);
+          back *= density[k] / (density[k] + lamp);
         }
         values[k] = back * hit.transmittance;
       }
     }
+  }
+
+  std::uint32_t owner_of(const Vec3& direction, double distance) const {
+    return first_way_out(light_.problem.lights.openings, openings_, p_, direction, distance);
   }
 
  private:
@@ -51,15 +61,129 @@ class Bundle {
   Vec3 p_;
   const Frame& frame_;
   int lamp_rays_;
+  std::span<const std::uint32_t> openings_;
 };
 
 int lamp_rays(const Illumination& light, const GatherPattern& pattern) {
   return light.lamps.has_emitters() ? pattern.quality().lamp_rays : 0;
 }
 
+std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {
+  return std::size_t{1} << (shares.empty() ? budget.least() : shares[static_cast<std::size_t>(stratum)]);
+}
+
+struct Sum {
+  Spectrum E{0.0};
+  double noise = 0;  ///< variance by the differences of neighbouring rays
+};
+
+/// Mean over the unit square of w pi L, along the rays that belong to `owner`.
+///   sight(point)                   direction, and solid angle there for each share of the square
+///   weight(direction, per_share)   w
+template <class Value, class Sight, class Weight>
+Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& shares, std::uint32_t owner,
+              const Sight& sight, const Weight& weight, unsigned long long& rays) {
+  std::array<Vec3, 16> directions;
+  std::array<double, 16> density, factor;
+  std::array<Spectrum, 16> values;
+  std::size_t queued = 0;
+  Sum sum;
+  const auto flush = [&] {
+    view.look(std::span(directions).first(queued), density, owner, std::span(values).first(queued));
+    for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * factor[k];
+    for (std::size_t k = 0; k + 1 < queued; k += 2) {
+      const double difference = luminous_mean(values[k]) * factor[k] - luminous_mean(values[k + 1]) * factor[k + 1];
+      sum.noise += difference * difference;
+    }
+    rays += queued;
+    queued = 0;
+  };
+  const RayBudget& budget = strata.budget();
+  for (int cell = 0; cell < budget.strata(); ++cell) {
+    const std::size_t count = share_of(shares, budget, cell);
+    const double share = 1.0 / static_cast<double>(count * static_cast<std::size_t>(budget.strata()));
+    for (const auto& point : strata.points(cell).first(count)) {
+      const auto [direction, per_share] = sight(point);
+      directions[queued] = direction;
+      density[queued] = 1 / (share * per_share);
+      factor[queued++] = share * weight(direction, per_share);
+      if (queued == 16) flush();
+    }
+  }
+  if (queued) flush();
+  return sum;
+}
+
+/// What pilot rays find in each stratum, luminous means; 0 where they do not belong to `owner`.
+template <class Value, class Sight>
+std::vector<double> pilot_values(const View& view, const Strata<Value>& strata, std::uint32_t owner,
+                                 const Sight& sight, unsigned long long& rays) {
+  const int count = strata.budget().strata();
+  const double share = 1.0 / (count << strata.budget().least());
+  std::vector<double> found(static_cast<std::size_t>(count));
+  std::array<Vec3, 16> directions;
+  std::array<double, 16> density;
+  std::array<Spectrum, 16> values;
+  for (int first = 0; first < count; first += 16) {
+    for (int k = 0; k < 16; ++k) {
+      const auto [direction, per_share] = sight(strata.pilot(first + k));
+      directions[static_cast<std::size_t>(k)] = direction;
+      density[static_cast<std::size_t>(k)] = 1 / (share * per_share);
+    }
+    view.look(directions, density, owner, values);
+    for (int k = 0; k < 16; ++k)
+      found[static_cast<std::size_t>(first + k)] = luminous_mean(values[static_cast<std::size_t>(k)]);
+  }
+  rays += static_cast<unsigned>(count);
+  return found;
+}
+
+/// More rays where neighbours differ. wraps: the last column of the grid is a neighbour of the first.
+RayShares shares_by(const std::vector<double>& pilot, const RayBudget& budget, bool wraps) {
+  const int g = budget.grid;
+  double sum_of_differences = 0, sum = 0;
+  std::vector<double> difference(pilot.size());
+  for (int i = 0; i < g; ++i)
+    for (int j = 0; j < g; ++j) {
+      const auto cell = static_cast<std::size_t>(budget.stratum(i, j));
+      double low = pilot[cell], high = low;
+      for (int di = -1; di <= 1; ++di)
+        for (int dj = -1; dj <= 1; ++dj) {
+          if (i + di < 0 || i + di >= g || (!wraps && (j + dj < 0 || j + dj >= g))) continue;
+          const double near = pilot[static_cast<std::size_t>(budget.stratum(i + di, (j + dj + g) % g))];
+          low = std::min(low, near), high = std::max(high, near);
+        }
+      difference[cell] = high - low;
+      sum_of_differences += difference[cell];
+      sum += pilot[cell];
+    }
+  if (!(sum_of_differences > 0)) return {};
+  // An even view needs no surplus: all of it is spent once neighbours differ by a quarter of the mean on average.
+  const double surplus = (budget.most_rays - budget.rays) * std::min(1.0, 4 * sum_of_differences / sum);
+  const double least = std::ldexp(1, budget.least());
+  RayShares shares(pilot.size());
+  for (std::size_t c = 0; c < pilot.size(); ++c) {
+    const double wanted = least + surplus * difference[c] / sum_of_differences;
+    shares[c] = static_cast<std::uint8_t>(
+        std::clamp(static_cast<int>(std::lround(std::log2(wanted))), budget.least(), budget.deepest()));
+  }
+  return shares;
+}
+
+/// Cosine-distributed directions: each stands for an equal part of the irradiance of an even view.
+auto bundle_sight(const Frame& frame) {
+  return [&frame](const std::array<float, 3>& d) {
+    return PolygonView::Sight{frame.to_world(d[0], d[1], d[2]), kPi / std::max(1e-6, static_cast<double>(d[2]))};
+  };
+}
+auto target_sight(const PolygonView& polygon) {
+  return [&polygon](const std::array<float, 2>& at) { return polygon.look(at[0], at[1]); };
+}
+
 Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
-                        const RayShares& shares) {
+                        const GatherPlan& plan, const View& view) {
   const int count = pattern.quality().lamp_rays;
+  const RayBudget& budget = pattern.quality().bundle;
   Spectrum sum(0.0);
   for (int first = 0; first < count; first += 16) {
     SegmentPacket segments;
@@ -73,9 +197,9 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
       segments.set(lane, p, s.density > 0 ? s.end : p);
       if (!(s.density > 0)) continue;
       const Vec3 d = normalized(s.end - p);
-      const int share =
-          shares.empty() ? pattern.least() : shares[static_cast<std::size_t>(pattern.stratum_of(frame, d))];
-      const double bundle = std::ldexp(pattern.strata(), share) * dot(frame.n, d) / std::numbers::pi;
+      if (view.owner_of(d, length(s.end - p)) != kNoOpening) continue;  // rays through that opening find it
+      const std::size_t rays = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
+      const double bundle = static_cast<double>(rays) * budget.strata() * dot(frame.n, d) / kPi;
       const double lamp = count * s.density;
       active |= 1u << lane;
       end[k] = s.end;
@@ -93,93 +217,54 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
 
 }  // namespace
 
-bool wants_pilot(const Illumination& light, const GatherPattern& pattern) {
-  return pattern.deepest() > pattern.least() && !light.sky.dark();
+bool wants_plan(const Illumination& light, const GatherPattern& pattern) {
+  const RayBudget& bundle = pattern.quality().bundle;
+  return !light.sky.dark() && (bundle.deepest() > bundle.least() || !light.problem.lights.openings.empty());
 }
 
-RayShares share_rays(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                     unsigned long long& rays) {
-  const int strata = pattern.strata(), g = pattern.quality().grid;
-  const auto count = static_cast<std::size_t>(strata);
+GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                       unsigned long long& rays) {
   const Frame frame(n);
-  const Bundle bundle(light, p, frame, lamp_rays(light, pattern));
-  std::vector<double> pilot(count), difference(count);
-  std::array<Vec3, 16> directions;
-  std::array<double, 16> density;
-  std::array<Spectrum, 16> values;
-  density.fill(std::ldexp(strata, pattern.least()));
-  for (int first = 0; first < strata; first += 16) {
-    for (int k = 0; k < 16; ++k) directions[static_cast<std::size_t>(k)] = bundle.direction(pattern.pilot(first + k));
-    bundle.look(directions, density, values);
-    for (int k = 0; k < 16; ++k)
-      pilot[static_cast<std::size_t>(first + k)] = luminous_mean(values[static_cast<std::size_t>(k)]);
+  const std::vector<Opening>& openings = light.problem.lights.openings;
+  GatherPlan plan;
+  for (const std::uint32_t k : openings_over(openings, p, n, kMostOpenings)) {
+    // Alone: what it shares with others goes to one of them in the end.
+    const PolygonView polygon(p, n, openings[k].triangles);
+    if (!(polygon.solid_angle() > 0)) continue;
+    const std::array<std::uint32_t, 1> alone{k};
+    const std::vector<double> found =
+        pilot_values(View(light, p, frame, 0, alone), pattern.target(), k, target_sight(polygon), rays);
+    if (std::ranges::none_of(found, [](double x) { return x > 0; })) continue;
+    plan.openings.push_back(k);
+    plan.opening_shares.push_back(shares_by(found, pattern.target().budget(), false));
   }
-  rays += count;
-
-  double sum_of_differences = 0, sum = 0;
-  for (int i = 0; i < g; ++i)
-    for (int j = 0; j < g; ++j) {
-      const auto cell = static_cast<std::size_t>(pattern.stratum(i, j));
-      double low = pilot[cell], high = low;
-      for (int di = -1; di <= 1; ++di)
-        for (int dj = -1; dj <= 1; ++dj) {
-          if (i + di < 0 || i + di >= g) continue;
-          const double near = pilot[static_cast<std::size_t>(pattern.stratum(i + di, (j + dj + g) % g))];
-          low = std::min(low, near), high = std::max(high, near);
-        }
-      difference[cell] = high - low;
-      sum_of_differences += difference[cell];
-      sum += pilot[cell];
-    }
-  RayShares shares(count, static_cast<std::uint8_t>(pattern.least()));
-  if (!(sum_of_differences > 0)) return shares;
-  // An even view needs no surplus: all of it is spent once neighbours differ by a quarter of the mean on average.
-  const auto& quality = pattern.quality();
-  const double surplus = (quality.most_rays - quality.rays) * std::min(1.0, 4 * sum_of_differences / sum);
-  const double least = std::ldexp(1, pattern.least());
-  for (std::size_t c = 0; c < count; ++c) {
-    const double wanted = least + surplus * difference[c] / sum_of_differences;
-    shares[c] = static_cast<std::uint8_t>(
-        std::clamp(static_cast<int>(std::lround(std::log2(wanted))), pattern.least(), pattern.deepest()));
+  const Strata<std::array<float, 3>>& bundle = pattern.bundle();
+  if (bundle.budget().deepest() > bundle.budget().least()) {
+    const View view(light, p, frame, lamp_rays(light, pattern), plan.openings);
+    plan.bundle = shares_by(pilot_values(view, bundle, kNoOpening, bundle_sight(frame), rays), bundle.budget(), true);
   }
-  return shares;
+  return plan;
 }
 
 PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                        const RayShares& shares, unsigned long long& rays) {
-  const int strata = pattern.strata(), to_lamps = lamp_rays(light, pattern);
+                        const GatherPlan& plan, unsigned long long& rays) {
+  const int to_lamps = lamp_rays(light, pattern);
   const Frame frame(n);
-  const Bundle bundle(light, p, frame, to_lamps);
-  std::array<Vec3, 16> directions;
-  std::array<double, 16> density;
-  std::array<Spectrum, 16> values;
-  std::size_t queued = 0;
-  Spectrum sum(0.0);
-  double noise = 0;
-  const auto flush = [&] {
-    bundle.look(std::span(directions).first(queued), std::span(density).first(queued), std::span(values).first(queued));
-    for (std::size_t k = 0; k < queued; ++k) sum += values[k] / density[k];
-    for (std::size_t k = 0; k + 1 < queued; k += 2) {
-      const double difference = luminous_mean(values[k]) / density[k] - luminous_mean(values[k + 1]) / density[k + 1];
-      noise += difference * difference;
-    }
-    rays += queued;
-    queued = 0;
-  };
-  for (int cell = 0; cell < strata; ++cell) {
-    const int share = shares.empty() ? pattern.least() : shares[static_cast<std::size_t>(cell)];
-    const double weight = std::ldexp(strata, share);
-    for (const auto& d : pattern.directions(cell).first(std::size_t{1} << share)) {
-      directions[queued] = bundle.direction(d);
-      density[queued++] = weight;
-      if (queued == 16) flush();
-    }
+  const View view(light, p, frame, to_lamps, plan.openings);
+  Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNoOpening, bundle_sight(frame),
+                      [](const Vec3&, double) { return 1.0; }, rays);
+  for (std::size_t k = 0; k < plan.openings.size(); ++k) {
+    const PolygonView polygon(p, n, light.problem.lights.openings[plan.openings[k]].triangles);
+    if (!(polygon.solid_angle() > 0)) continue;
+    const Sum through = integrate(view, pattern.target(), plan.opening_shares[k], plan.openings[k], target_sight(polygon),
+                                  [&](const Vec3& d, double per_share) { return dot(d, n) / kPi * per_share; }, rays);
+    sum.E += through.E;
+    sum.noise += through.noise;
   }
-  if (queued) flush();
 
-  PointLight at{sum, Spectrum(0.0), std::sqrt(noise)};
+  PointLight at{sum.E, Spectrum(0.0), std::sqrt(sum.noise)};
   if (to_lamps > 0) {
-    at.E += bright_patches(light, p, frame, pattern, shares);
+    at.E += bright_patches(light, p, frame, pattern, plan, view);
     rays += static_cast<unsigned>(to_lamps);
   }
   if (!light.problem.lights.empty()) {
@@ -192,7 +277,7 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
 PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                         unsigned long long& rays) {
   return gather_point(light, p, n, pattern,
-                      wants_pilot(light, pattern) ? share_rays(light, p, n, pattern, rays) : RayShares{}, rays);
+                      wants_plan(light, pattern) ? plan_gather(light, p, n, pattern, rays) : GatherPlan{}, rays);
 }
 
 }  // namespace clerestory

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "solver/lights/light_sampler.h"
+#include "solver/lights/openings.h"
 #include "solver/lights/point_lights.h"
 #include "solver/lights/sun.h"
 #include "solver/model/disjoint_sets.h"
@@ -17,7 +18,7 @@ namespace {
 constexpr std::size_t kBlock = 1 << 14;   ///< patches between two looks at what is known by then
 constexpr std::size_t kLampSamples = 64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
 
-enum StreamKind : std::uint64_t { kSideRays = 0x31, kLampRays = 0x32, kLampSearch = 0x33 };
+enum StreamKind : std::uint64_t { kSideRays = 0x31, kLampRays = 0x32, kLampSearch = 0x33, kOpeningRays = 0x34 };
 
 /// Patches that see each other, and what is known of each such space.
 class Spaces {
@@ -160,6 +161,20 @@ void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) 
     if (patch.valid()) spaces.light(patch);
 }
 
+/// Sides that rays through the openings meet: of a room behind a slit no ray of its own may find it.
+void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
+  constexpr std::uint32_t kRays = 64;
+  for (std::size_t k = 0; k < problem.lights.openings.size(); ++k) {
+    const Opening& opening = problem.lights.openings[k];
+    const std::uint64_t key = stream_key(seed, kOpeningRays, k);
+    for (std::uint32_t r = 0; r < kRays; ++r) {
+      const Ray ray = ray_through(opening, opening.normal, key, r, problem.rays.lift());
+      const Hit hit = problem.rays.first_hit(problem.patches, ray);
+      if (hit.patch.valid()) spaces.light(hit.patch);
+    }
+  }
+}
+
 /// Lets the given patches look for luminaires and for the patches that glow.
 void search_lamps(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
                   std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
@@ -189,6 +204,7 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   for (std::size_t i = 0; i < n; ++i)
     for (const PatchSet::Behind& other : patches.patches_behind(i)) spaces.see_each_other(patches, i, other.patch);
   light_by_lamps(problem, seed, spaces);
+  light_by_openings(problem, seed, spaces);
 
   // Emitters first: most patches of a large scene are then met by a ray before it is their turn, and send none, or meet
   // a space that takes part with their first ray.

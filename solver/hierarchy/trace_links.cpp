@@ -10,6 +10,7 @@
 #include "solver/hierarchy/bundle_net.h"
 #include "solver/hierarchy/gather_links.h"
 #include "solver/hierarchy/receivers.h"
+#include "solver/lights/openings.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -53,12 +54,12 @@ double shared_weight(double cos_p, double own, double other) {
 class Tracer {
  public:
   Tracer(const Illumination& light, const ElementTree& tree, const BundleNet& net, const NodeLight* nodes,
-         const Field& E, const LinkOptions& options)
+         const DirectLight& direct, const LinkOptions& options)
       : light_(light),
         tree_(tree),
         net_(net),
         nodes_(nodes),
-        E_(E),
+        direct_(direct),
         options_(options),
         patches_(light.problem.patches),
         rays_(static_cast<std::size_t>(options.bundle_rays)),
@@ -157,7 +158,10 @@ class Tracer {
       if (n > 1) find_shares(d, std::span(share).first(n));
       if (hit.escaped()) {
         const Spectrum from_sky = light_.sky(hit.direction(rays_[k])) * std::numbers::pi * hit.transmittance;
-        for (std::size_t m = 0; m < n; ++m) sky[m] += from_sky * share[m], escape[m] += share[m] * passes;
+        for (std::size_t m = 0; m < n; ++m) {
+          escape[m] += share[m] * passes;
+          if (!is_looked_for(members_[m].patch, rays_[k], hit)) sky[m] += from_sky * share[m];
+        }
       } else if (hit.patch.valid()) {
         if (met < neighbours.size()) neighbours[met++] = hit.patch.value;
         const bool bright = pairs && !hit.reflected && light_.lamps.is_explicit(hit.patch);
@@ -182,6 +186,13 @@ class Tracer {
       transport.escapes[p] = static_cast<float>(all[m] > 0 ? escape[m] / all[m] : 0);
       sky_mean_ += members_[m].area / area_ * luminous_mean(sky[m] / R);
     }
+  }
+
+  /// Whether direct light has looked for this ray's sky through an opening.
+  bool is_looked_for(std::uint32_t patch, const Ray& ray, const Hit& hit) const {
+    const auto openings = direct_.openings.of(patch);
+    return !openings.empty() && first_way_out(light_.problem.lights.openings, openings, ray.origin, ray.direction,
+                                              hit.first) != kNoOpening;
   }
 
   void send_pairs() {
@@ -279,7 +290,10 @@ class Tracer {
   double irradiance() const {
     double E = sky_mean_;
     for (const Arrival& a : arrivals_) E += a.weight * nodes_->mean[a.node];
-    for (const Member& m : members_) E += m.area / area_ * luminous_mean(E_[m.patch]);
+    for (const Member& m : members_) {
+      E += m.area / area_ * luminous_mean(direct_.E[m.patch]);
+      if (!direct_.E_openings.value.empty()) E += m.area / area_ * luminous_mean(direct_.E_openings[m.patch]);
+    }
     return E;
   }
 
@@ -343,7 +357,7 @@ class Tracer {
   const ElementTree& tree_;
   const BundleNet& net_;
   const NodeLight* nodes_;
-  const Field& E_;
+  const DirectLight& direct_;
   const LinkOptions& options_;
   const PatchSet& patches_;
   std::vector<Member> members_;
@@ -382,7 +396,7 @@ void find_spaces(Transport& transport, const PatchSet& patches, const ElementTre
 
 }  // namespace
 
-Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const Field& E,
+Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const DirectLight& direct,
                       const LinkOptions& options, const Monitor& monitor) {
   const PatchSet& patches = light.problem.patches;
   const std::size_t n = patches.patch_count();
@@ -404,7 +418,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   for (std::size_t begin = 0; begin < transport.blocks.size(); begin += kBatch) {
     monitor.report("links", static_cast<double>(begin) / static_cast<double>(transport.blocks.size()));
     parallel_for(std::min(kBatch, transport.blocks.size() - begin), 1, [&](std::size_t from, std::size_t to) {
-      Tracer tracer(light, tree, net, B.size() == n ? &nodes : nullptr, E, options);
+      Tracer tracer(light, tree, net, B.size() == n ? &nodes : nullptr, direct, options);
       for (std::size_t b = begin + from; b < begin + to; ++b) {
         if (monitor.should_stop()) {
           stopped = true;
@@ -431,7 +445,8 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
 std::vector<BundleRay> trace_bundle(const Illumination& light, const ElementTree& tree, const Receiver& receiver,
                                     const LinkOptions& options) {
   const BundleNet net(options.bundle_rays, stream_key(options.seed, kBundle));
-  return Tracer(light, tree, net, nullptr, {}, options).bundle(receiver);
+  const DirectLight none;
+  return Tracer(light, tree, net, nullptr, none, options).bundle(receiver);
 }
 
 }  // namespace clerestory

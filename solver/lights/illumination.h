@@ -2,6 +2,7 @@
 // The lights of a problem, ready to be sampled.
 
 #include "solver/lights/light_sampler.h"
+#include "solver/lights/opening_sampler.h"
 #include "solver/lights/sky.h"
 #include "solver/problem.h"
 
@@ -11,10 +12,11 @@ struct Illumination {
   const Problem& problem;
   LightSampler lamps;
   SkyRadiance sky;
+  OpeningSampler openings;
 
   explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}
   /// glow: see LightSampler; outlives this.
-  Illumination(const Problem& p, const Field& glow) : problem(p), lamps(p, glow), sky(p.lights) {}
+  Illumination(const Problem& p, const Field& glow) : problem(p), lamps(p, glow), sky(p.lights), openings(p) {}
 };
 
 }  // namespace clerestory

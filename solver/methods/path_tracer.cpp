@@ -41,6 +41,21 @@ Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, cons
          (by_mirror ? scene.transmittance_by_mirror(p, s.end, s.mirror) : scene.transmittance(p, s.end));
 }
 
+/// The sky by one ray through an opening. Of light that bundle rays meet too, the share that is due to these.
+Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n, RandomStream& random,
+                         unsigned long long& rays) {
+  const double pick = random.uniform(), u = random.uniform(), v = random.uniform();
+  const OpeningSampler::Sample s = light.openings.sample(p, n, pick, u, v);
+  const double cos_p = dot(n, s.direction);
+  if (!(s.per_choice > 0) || !(cos_p > 0)) return Spectrum(0.0);
+  ++rays;
+  const RayScene& scene = light.problem.rays;
+  const Spectrum passes = scene.transmittance(p, p + s.direction * (4 * scene.diameter()));
+  if (passes.is_black()) return passes;
+  const double all = light.openings.preference(p, n, s.direction) + cos_p / std::numbers::pi;
+  return light.sky(s.direction) * passes * (cos_p * s.per_choice * s.preference / all);
+}
+
 /// Of the light that patch q scatters, the share that leaves its other side; below 1 where it reflects.
 double share_that_passes(const PatchSet& patches, PatchId q) {
   const double through = luminous_mean(patches.tau[q]), back = luminous_mean(patches.rho[q]);
@@ -62,6 +77,7 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   auto [square, choice] = start;
   while (true) {
     if (!light.lamps.empty()) E += throughput * one_light(light, p, n, choice, rays);
+    if (!light.openings.empty()) E += throughput * through_opening(light, p, n, random, rays);
     const double survival = std::min(1.0, throughput.max() / kSafe);
     if (!(random.uniform() < survival)) return E;
     throughput *= 1 / survival;
@@ -70,7 +86,14 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     const Hit hit = problem.rays.first_hit(patches, {p, d});
     ++rays;
     throughput *= hit.transmittance;
-    if (hit.escaped()) return E + throughput * light.sky(hit.direction({p, d})) * std::numbers::pi;
+    if (hit.escaped()) {
+      double weight = 1;
+      if (!hit.reflected && !light.openings.empty()) {
+        const double bundle = dot(n, d) / std::numbers::pi;
+        weight = bundle / (bundle + light.openings.preference(p, n, d));
+      }
+      return E + throughput * light.sky(hit.direction({p, d})) * (weight * std::numbers::pi);
+    }
     if (!hit.patch.valid()) return E;
     const Spectrum M = patches.M[hit.patch];
     if (!M.is_black()) {

@@ -173,7 +173,7 @@ int run(const Arguments& arguments) {
   PatchSet& patches = meshed.patches;
   patches.channels = scene.channels();
   const RayScene rays(patches);
-  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  const Lights lights = local_lights(scene.lights, patches, rays);
   const Problem problem{patches, rays, lights};
   make_patches(patches, find_lit_sides(problem, 1).wanted);
   const Illumination light(problem);

@@ -23,7 +23,7 @@ struct Linked {
 
   Linked(PatchSet p, const LinkOptions& options)
       : patches(std::move(p)), glow(patches.M), tree(build_tree(patches, glow)) {
-    transport = trace_links(Illumination(problem, glow), tree, {}, Field(patches.patch_count(), 1), options);
+    transport = trace_links(Illumination(problem, glow), tree, {}, {.E = Field(patches.patch_count(), 1)}, options);
   }
   Field gather(const Field& B) const {
     Field nodes, E(patches.patch_count(), 1);

@@ -42,10 +42,9 @@ Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, cons
 }
 
 /// The sky by one ray through an opening. Of light that bundle rays meet too, the share that is due to these.
-Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n, RandomStream& random,
+Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
                          unsigned long long& rays) {
-  const double pick = random.uniform(), u = random.uniform(), v = random.uniform();
-  const OpeningSampler::Sample s = light.openings.sample(p, n, pick, u, v);
+  const OpeningSampler::Sample s = light.openings.sample(p, n, u[0], u[1], u[2]);
   const double cos_p = dot(n, s.direction);
   if (!(s.per_choice > 0) || !(cos_p > 0)) return Spectrum(0.0);
   ++rays;
@@ -65,8 +64,8 @@ double share_that_passes(const PatchSet& patches, PatchId q) {
 }  // namespace
 
 PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, std::uint64_t key) {
-  const auto u = sobol4(k, key + 1);
-  return {direction, {u[0], u[1], u[2]}};
+  const auto u = sobol4(k, key + 1), v = sobol4(k, key + 2);
+  return {direction, {u[0], u[1], u[2]}, {v[0], v[1], v[2]}};
 }
 
 Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
@@ -74,10 +73,10 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   const Problem& problem = light.problem;
   const PatchSet& patches = problem.patches;
   Spectrum E(0.0), throughput(1.0);
-  auto [square, choice] = start;
+  auto [square, choice, opening] = start;
   while (true) {
     if (!light.lamps.empty()) E += throughput * one_light(light, p, n, choice, rays);
-    if (!light.openings.empty()) E += throughput * through_opening(light, p, n, random, rays);
+    if (!light.openings.empty()) E += throughput * through_opening(light, p, n, opening, rays);
     const double survival = std::min(1.0, throughput.max() / kSafe);
     if (!(random.uniform() < survival)) return E;
     throughput *= 1 / survival;
@@ -114,6 +113,7 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     n = through ? -patches.normal[hit.patch] : patches.normal[hit.patch];
     p += n * problem.rays.lift();
     choice = {random.uniform(), random.uniform(), random.uniform()};
+    if (!light.openings.empty()) opening = {random.uniform(), random.uniform(), random.uniform()};
     square = {random.uniform(), random.uniform()};
   }
 }

@@ -19,6 +19,8 @@ std::array<float, 3> local_direction(double u, double v) {
 
 std::array<float, 2> itself(double u, double v) { return {static_cast<float>(u), static_cast<float>(v)}; }
 
+RayBudget a_quarter(const RayBudget& all) { return {std::max(4, all.grid / 2), all.rays / 4, all.rays / 4}; }
+
 }  // namespace
 
 int RayBudget::least() const { return std::bit_width(static_cast<unsigned>(std::max(1, rays / strata()))) - 1; }
@@ -46,11 +48,16 @@ GatherPattern::GatherPattern(const GatherQuality& quality, std::uint64_t seed)
     : quality_(quality),
       bundle_(quality.bundle, stream_key(seed, 1), stream_key(seed, 2), local_direction),
       target_(quality.target, stream_key(seed, 5), stream_key(seed, 6), itself),
+      even_target_(a_quarter(quality.target), stream_key(seed, 8), stream_key(seed, 9), itself),
       sun_key_(stream_key(seed, 4)) {
   const std::uint64_t lamp_key = stream_key(seed, 3);
   for (int k = 0; k < quality.lamp_rays; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), lamp_key);
     lamp_choices_.push_back({u[0], u[1], u[2]});
+  }
+  for (std::uint32_t k = 0; k < kLampPilots; ++k) {
+    const auto u = sobol4(k, stream_key(seed, 7));
+    lamp_pilots_.push_back({u[0], u[1], u[2]});
   }
 }
 

@@ -69,8 +69,13 @@ class GatherPattern {
   /// Directions in the frame of the normal (z), cosine-distributed.
   const Strata<std::array<float, 3>>& bundle() const { return bundle_; }
   const Strata<std::array<float, 2>>& target() const { return target_; }
+  /// A quarter of the rays, for a target of which all is seen.
+  const Strata<std::array<float, 2>>& even_target() const { return even_target_; }
   /// Which light, and where on it, for each lamp ray.
   const std::vector<std::array<double, 3>>& lamp_choices() const { return lamp_choices_; }
+  /// The same for pilot rays.
+  static constexpr std::uint32_t kLampPilots = 64;
+  const std::vector<std::array<double, 3>>& lamp_pilots() const { return lamp_pilots_; }
   std::uint64_t sun_key() const { return sun_key_; }
 
   int stratum_of(const Frame& frame, const Vec3& direction) const;
@@ -78,8 +83,8 @@ class GatherPattern {
  private:
   GatherQuality quality_;
   Strata<std::array<float, 3>> bundle_;
-  Strata<std::array<float, 2>> target_;
-  std::vector<std::array<double, 3>> lamp_choices_;
+  Strata<std::array<float, 2>> target_, even_target_;
+  std::vector<std::array<double, 3>> lamp_choices_, lamp_pilots_;
   std::uint64_t sun_key_;
 };
 

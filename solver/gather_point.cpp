@@ -16,6 +16,7 @@ namespace clerestory {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kGradual = 0.25;  ///< neighbours that differ by less, as share of the brighter, need no more rays
 constexpr std::size_t kMostOpenings = 8;  ///< openings that a point looks through by rays of their own
 
 /// What comes back along rays from one point.
@@ -64,8 +65,55 @@ class View {
   std::span<const std::uint32_t> openings_;
 };
 
-int lamp_rays(const Illumination& light, const GatherPattern& pattern) {
-  return light.lamps.has_emitters() ? pattern.quality().lamp_rays : 0;
+int lamp_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan) {
+  return plan.looks_for_lamps && light.lamps.has_emitters() ? pattern.quality().lamp_rays : 0;
+}
+
+/// Whether any of a few rays to bright patches gets there: those outside of a room are none of its lamps.
+bool sees_lamps(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                unsigned long long& rays) {
+  if (!light.lamps.has_emitters()) return false;
+  for (std::size_t first = 0; first < GatherPattern::kLampPilots; first += 16) {
+    SegmentPacket segments;
+    unsigned active = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+      const auto& u = pattern.lamp_pilots()[first + static_cast<std::size_t>(lane)];
+      const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], true);
+      segments.set(lane, p, s.density > 0 ? s.end : p);
+      if (s.density > 0) active |= 1u << lane;
+    }
+    rays += 16;
+    if (active && light.problem.rays.visible16(segments, static_cast<std::uint16_t>(active))) return true;
+  }
+  return false;
+}
+
+/// Whether a few rays find some sky that belongs to none of the openings, and something else as well or a bright spot.
+bool sees_edge_of_sky(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
+                   std::span<const std::uint32_t> openings, unsigned long long& rays) {
+  const int count = pattern.bundle().budget().strata();
+  bool sky = false, other = false;
+  double brightest = 0, sum = 0;
+  std::array<Ray, 16> pilots;
+  std::array<Hit, 16> hits;
+  for (int first = 0; first < count; first += 64) {
+    for (int k = 0; k < 16; ++k) {
+      const auto& d = pattern.bundle().pilot(first + 4 * k);
+      pilots[static_cast<std::size_t>(k)] = {p, frame.to_world(d[0], d[1], d[2])};
+    }
+    light.problem.rays.first_hits(light.problem.patches, pilots, hits);
+    rays += 16;
+    for (std::size_t k = 0; k < 16; ++k) {
+      const bool is_sky = hits[k].escaped() && first_way_out(light.problem.lights.openings, openings, p,
+                                                             pilots[k].direction, hits[k].first) == kNoOpening;
+      (is_sky ? sky : other) = true;
+      if (!is_sky) continue;
+      const double L = luminous_mean(light.sky(hits[k].direction(pilots[k])));
+      brightest = std::max(brightest, L), sum += L;
+    }
+    if (sky && other) return true;
+  }
+  return brightest > 3 * sum / (count / 4);  // around the sun, or in an image
 }
 
 std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {
@@ -153,12 +201,12 @@ RayShares shares_by(const std::vector<double>& pilot, const RayBudget& budget, b
           const double near = pilot[static_cast<std::size_t>(budget.stratum(i + di, (j + dj + g) % g))];
           low = std::min(low, near), high = std::max(high, near);
         }
-      difference[cell] = high - low;
+      difference[cell] = std::max(0.0, high - low - kGradual * high);
       sum_of_differences += difference[cell];
       sum += pilot[cell];
     }
   if (!(sum_of_differences > 0)) return {};
-  // An even view needs no surplus: all of it is spent once neighbours differ by a quarter of the mean on average.
+  // All of the surplus is spent once neighbours differ by a quarter of the mean on average.
   const double surplus = (budget.most_rays - budget.rays) * std::min(1.0, 4 * sum_of_differences / sum);
   const double least = std::ldexp(1, budget.least());
   RayShares shares(pilot.size());
@@ -227,6 +275,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   const Frame frame(n);
   const std::vector<Opening>& openings = light.problem.lights.openings;
   GatherPlan plan;
+  plan.looks_for_lamps = sees_lamps(light, p, n, pattern, rays);
   for (const std::uint32_t k : openings_over(openings, p, n, kMostOpenings)) {
     // Alone: what it shares with others goes to one of them in the end.
     const PolygonView polygon(p, n, openings[k].triangles);
@@ -239,8 +288,9 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
     plan.opening_shares.push_back(shares_by(found, pattern.target().budget(), false));
   }
   const Strata<std::array<float, 3>>& bundle = pattern.bundle();
-  if (bundle.budget().deepest() > bundle.budget().least()) {
-    const View view(light, p, frame, lamp_rays(light, pattern), plan.openings);
+  const bool adapts = bundle.budget().deepest() > bundle.budget().least();
+  if (adapts && sees_edge_of_sky(light, p, frame, pattern, plan.openings, rays)) {
+    const View view(light, p, frame, lamp_rays(light, pattern, plan), plan.openings);
     plan.bundle = shares_by(pilot_values(view, bundle, kNoOpening, bundle_sight(frame), rays), bundle.budget(), true);
   }
   return plan;
@@ -248,7 +298,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 
 PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                         const GatherPlan& plan, unsigned long long& rays) {
-  const int to_lamps = lamp_rays(light, pattern);
+  const int to_lamps = lamp_rays(light, pattern, plan);
   const Frame frame(n);
   const View view(light, p, frame, to_lamps, plan.openings);
   Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNoOpening, bundle_sight(frame),
@@ -256,7 +306,8 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   for (std::size_t k = 0; k < plan.openings.size(); ++k) {
     const PolygonView polygon(p, n, light.problem.lights.openings[plan.openings[k]].triangles);
     if (!(polygon.solid_angle() > 0)) continue;
-    const Sum through = integrate(view, pattern.target(), plan.opening_shares[k], plan.openings[k], target_sight(polygon),
+    const RayShares& shares = plan.opening_shares[k];
+    const Sum through = integrate(view, shares.empty() ? pattern.even_target() : pattern.target(), shares, plan.openings[k], target_sight(polygon),
                                   [&](const Vec3& d, double per_share) { return dot(d, n) / kPi * per_share; }, rays);
     sum.E += through.E;
     sum.noise += through.noise;

@@ -24,6 +24,7 @@ using RayShares = std::vector<std::uint8_t>;
 /// is biased; the plan serves points nearby too.
 struct GatherPlan {
   RayShares bundle;
+  bool looks_for_lamps = true;            ///< by shadow rays; else bright patches are left to the bundle
   std::vector<std::uint32_t> openings;    ///< looked through by rays of their own
   std::vector<RayShares> opening_shares;  ///< of each of them
 };

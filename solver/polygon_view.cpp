@@ -11,9 +11,6 @@ namespace {
 
 constexpr double kTooSmall = 1e-6;  ///< [sr] below this the formula loses too many digits
 
-/// Angle between vectors of any length, to full precision however small.
-double angle(const Vec3& a, const Vec3& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
-
 /// The part of c that is perpendicular to the unit vector a, as a unit vector.
 Vec3 perpendicular(const Vec3& c, const Vec3& a) { return normalized(c - a * dot(a, c)); }
 
@@ -27,6 +24,7 @@ double solid_angle_of(const std::array<Vec3, 3>& t) {
 
 PolygonView::PolygonView(const Vec3& p, const Vec3& n, std::span<const std::array<Vec3, 3>> triangles) {
   const Plane horizon = Plane::through(p, n);
+  parts_.reserve(2 * triangles.size());
   for (const auto& triangle : triangles) {
     const ClippedTriangle front = clip_to_front(triangle, horizon, 0);
     for (std::size_t k = 2; k < front.size; ++k) add(p, {front.corner[0], front.corner[k - 1], front.corner[k]});
@@ -37,9 +35,8 @@ void PolygonView::add(const Vec3& p, std::array<Vec3, 3> corners) {
   for (Vec3& c : corners) c = normalized(c - p);
   const double omega = solid_angle_of(corners);
   if (!(omega > 0)) return;
-  const Vec3 ab = cross(corners[0], corners[1]), ca = cross(corners[2], corners[0]);
   solid_angle_ += omega;
-  parts_.push_back({corners, angle(ab, -ca), omega, solid_angle_});
+  parts_.push_back({corners, omega, solid_angle_});
 }
 
 PolygonView::Sight PolygonView::look(double u, double v) const {
@@ -59,11 +56,14 @@ PolygonView::Sight PolygonView::look(double u, double v) const {
     return {x / r, solid_angle_ / part->solid_angle * volume / (2 * r * r * r)};
   }
   // The triangle a, b, x with x on the arc from a to c that has this share of the area.
-  const double area = share * part->solid_angle, alpha = part->alpha;
-  const double s = std::sin(area - alpha), t = std::cos(area - alpha);
-  const double k1 = t - std::cos(alpha), k2 = s + std::sin(alpha) * dot(a, b);
-  const double below = (k2 * s + k1 * t) * std::sin(alpha);
-  const double cos_x = below != 0 ? std::clamp(((k2 * t - k1 * s) * std::cos(alpha) - k2) / below, -1.0, 1.0) : 1.0;
+  const Vec3 ab = cross(a, b), ac = cross(a, c);
+  const double scale = 1 / std::sqrt(dot(ab, ab) * dot(ac, ac));
+  const double cos_alpha = dot(ab, ac) * scale, sin_alpha = length(cross(ab, ac)) * scale;  // alpha: angle at a
+  const double area = share * part->solid_angle, sin_area = std::sin(area), cos_area = std::cos(area);
+  const double s = sin_area * cos_alpha - cos_area * sin_alpha, t = cos_area * cos_alpha + sin_area * sin_alpha;
+  const double k1 = t - cos_alpha, k2 = s + sin_alpha * dot(a, b);
+  const double below = (k2 * s + k1 * t) * sin_alpha;
+  const double cos_x = below != 0 ? std::clamp(((k2 * t - k1 * s) * cos_alpha - k2) / below, -1.0, 1.0) : 1.0;
   const Vec3 x = a * cos_x + perpendicular(c, a) * std::sqrt(std::max(0.0, 1 - cos_x * cos_x));
   const double cos_y = 1 - v * (1 - dot(x, b));
   return {normalized(b * cos_y + perpendicular(x, b) * std::sqrt(std::max(0.0, 1 - cos_y * cos_y))), solid_angle_};

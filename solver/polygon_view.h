@@ -30,7 +30,6 @@ class PolygonView {
  private:
   struct Part {
     std::array<Vec3, 3> to;  ///< unit, from p to its corners
-    double alpha;            ///< angle at corner 0 [rad]
     double solid_angle, cumulative;
   };
   void add(const Vec3& p, std::array<Vec3, 3> corners);

@@ -20,7 +20,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92;
+constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92, kPairPilot = 0x93;
 constexpr double kMostOwed = 0.1;         // of the limit for one link: a row may not drift by more while it is cut
 constexpr int kZones = 6, kSectors = 12;  // parts of the sphere
 constexpr std::size_t kParts = kZones * kSectors;
@@ -68,8 +68,9 @@ class Tracer {
 
   void add(const Receiver& receiver, LinkBlock& out, Transport& transport, std::span<std::uint32_t> neighbours) {
     look_at(receiver);
+    pairs_ = light_.lamps.has_emitters() && options_.lamp_rays > 0 && (light_.sky.dark() || sees_bright_patches());
     send_bundle(transport, neighbours);
-    if (light_.lamps.has_emitters() && options_.lamp_rays > 0) send_pairs();
+    if (pairs_) send_pairs();
     fill_row(transport);
     write(receiver, out);
   }
@@ -143,7 +144,6 @@ class Tracer {
 
   void send_bundle(Transport& transport, std::span<std::uint32_t> neighbours) {
     const int R = options_.bundle_rays;
-    const bool pairs = light_.lamps.has_emitters() && options_.lamp_rays > 0;
     const std::size_t n = members_.size();
     std::array<double, kMostMembers> share{}, all{}, arrive{}, escape{};
     std::array<Spectrum, kMostMembers> sky{};
@@ -164,7 +164,7 @@ class Tracer {
         }
       } else if (hit.patch.valid()) {
         if (met < neighbours.size()) neighbours[met++] = hit.patch.value;
-        const bool bright = pairs && !hit.reflected && light_.lamps.is_explicit(hit.patch);
+        const bool bright = pairs_ && !hit.reflected && light_.lamps.is_explicit(hit.patch);
         double weight = 1.0 / R;
         if (bright) {
           const double cos_p = dot(from.normal, d) / std::numbers::pi;
@@ -195,9 +195,37 @@ class Tracer {
                                               hit.first) != kNoOpening;
   }
 
+  /// One pair of a point of the receiver with one of a bright patch.
+  struct Pair {
+    Vec3 from, to, normal;
+    LightSample sample;
+  };
+  Pair pair(std::uint32_t number, std::uint64_t key) const {
+    // Place and choice of the source matter most: they share one sequence, and are stratified against each other.
+    const auto u = sobol4(number, key);
+    auto v = sobol4(number, mix_bits(key));
+    const Member& member = pick(v[1]);
+    const Vec3 from = point_on_triangle(member.corners, u[0], u[1]) + member.normal * light_.problem.rays.lift();
+    const LightSample s = light_.lamps.sample(from, member.normal, u[2], u[3], v[0], true);
+    return {from, s.density > 0 ? s.end : from, member.normal, s};
+  }
+
+  /// Under the sky bright patches mostly lie outdoors, and most receivers do not see them: a few pairs tell. Without any
+  /// that gets through, bright patches are left to the bundle.
+  bool sees_bright_patches() const {
+    SegmentPacket segments;
+    unsigned active = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+      const Pair p = pair(static_cast<std::uint32_t>(lane), mix_bits(key_ + kPairPilot));
+      segments.set(lane, p.from, p.to);
+      if (p.sample.density > 0) active |= 1u << lane;
+    }
+    return active && light_.problem.rays.visible16(segments, static_cast<std::uint16_t>(active));
+  }
+
   void send_pairs() {
     const Problem& problem = light_.problem;
-    const std::uint64_t key = mix_bits(key_ + kLampPairs), key_of_rest = mix_bits(key);
+    const std::uint64_t key = mix_bits(key_ + kLampPairs);
     for (int first = 0; first < options_.lamp_rays; first += 16) {
       SegmentPacket segments;
       std::array<Vec3, 16> from, to, direction;
@@ -206,20 +234,14 @@ class Tracer {
       unsigned active = 0;
       for (int lane = 0; lane < 16; ++lane) {
         const auto k = static_cast<std::size_t>(lane);
-        const auto ray = static_cast<std::uint32_t>(first + lane);
-        // Place and choice of the source matter most: they share one sequence, and are stratified against each other.
-        const auto u = sobol4(ray, key);
-        auto v = sobol4(ray, key_of_rest);
-        const Member& member = pick(v[1]);
-        from[k] = point_on_triangle(member.corners, u[0], u[1]) + member.normal * problem.rays.lift();
-        const LightSample s = light_.lamps.sample(from[k], member.normal, u[2], u[3], v[0], true);
-        to[k] = s.density > 0 ? s.end : from[k];
+        const Pair p = pair(static_cast<std::uint32_t>(first + lane), key);
+        from[k] = p.from, to[k] = p.to;
         segments.set(lane, from[k], to[k]);
-        if (!(s.density > 0)) continue;
+        if (!(p.sample.density > 0)) continue;
         direction[k] = normalized(to[k] - from[k]);
-        const double cos_p = std::max(0.0, dot(member.normal, direction[k])) / std::numbers::pi;
-        weight[k] = shared_weight(cos_p, options_.lamp_rays * s.density, options_.bundle_rays * cos_p);
-        source[k] = s.patch;
+        const double cos_p = std::max(0.0, dot(p.normal, direction[k])) / std::numbers::pi;
+        weight[k] = shared_weight(cos_p, options_.lamp_rays * p.sample.density, options_.bundle_rays * cos_p);
+        source[k] = p.sample.patch;
         if (weight[k] > 0) active |= 1u << lane;
       }
       if (!active) continue;
@@ -368,7 +390,7 @@ class Tracer {
   std::array<std::array<double, kMostMembers>, kParts> shares_{};  ///< by part of the sphere, sums
   std::array<double, kParts> part_weight_{};
   std::uint64_t key_ = 0;
-  bool hands_down_ = false;
+  bool hands_down_ = false, pairs_ = false;
   double bright_ = 0, bright_seen_ = 0;  ///< what arrives of bright patches, after and before glass [1]
   double bright_hits_ = 0;               ///< share of the bundle that ended on them
   double area_ = 0, sky_mean_ = 0, limit_ = 0, owed_ = 0, most_owed_ = 0;

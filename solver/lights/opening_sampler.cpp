@@ -33,14 +33,19 @@ OpeningSampler::Sample OpeningSampler::sample(const Vec3& p, const Vec3& n, doub
   const PolygonView polygon(p, n, problem_.lights.openings[choice.light].triangles);
   if (!(polygon.solid_angle() > 0)) return {};
   const auto [direction, per_share] = polygon.look(u, v);
-  return {direction, per_share / choice.probability, choice.probability / polygon.solid_angle()};
+  return {direction, per_share / choice.probability, choice.probability / polygon.solid_angle(),
+          preference(p, n, direction, choice.light)};
 }
 
 double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d) const {
+  return preference(p, n, d, kNoOpening);
+}
+
+double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d, std::uint32_t but) const {
   double sum = 0;
   for (std::uint32_t k = 0; k < problem_.lights.openings.size(); ++k) {
     const Opening& opening = problem_.lights.openings[k];
-    if (way_out(opening, p, d) < 0) continue;
+    if (k == but || way_out(opening, p, d) < 0) continue;
     const double solid_angle = PolygonView(p, n, opening.triangles).solid_angle();
     if (solid_angle > 0) sum += tree_.probability(k, p, n) / solid_angle;
   }

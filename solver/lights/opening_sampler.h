@@ -16,6 +16,7 @@ class OpeningSampler {
     Vec3 direction;         ///< unit
     double per_choice = 0;  ///< solid angle for each share of the choice: 1 / density [sr]; 0: nothing to choose
     double preference = 0;  ///< part of preference(direction) that is due to the opening chosen [1/sr]
+    double others = 0;      ///< and the rest of it
   };
   /// Opening chosen by `pick` in [0, 1), and the direction (u, v) through it, for receiver point p with normal n.
   Sample sample(const Vec3& p, const Vec3& n, double pick, double u, double v) const;
@@ -25,6 +26,8 @@ class OpeningSampler {
   double preference(const Vec3& p, const Vec3& n, const Vec3& d) const;
 
  private:
+  double preference(const Vec3& p, const Vec3& n, const Vec3& d, std::uint32_t but) const;
+
   const Problem& problem_;
   LightTree tree_;
 };

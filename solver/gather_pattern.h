@@ -69,7 +69,7 @@ class GatherPattern {
   /// Directions in the frame of the normal (z), cosine-distributed.
   const Strata<std::array<float, 3>>& bundle() const { return bundle_; }
   const Strata<std::array<float, 2>>& target() const { return target_; }
-  /// A quarter of the rays, for a target of which all is seen.
+  /// A quarter of the rays, for a small target of which all is seen.
   const Strata<std::array<float, 2>>& even_target() const { return even_target_; }
   /// Which light, and where on it, for each lamp ray.
   const std::vector<std::array<double, 3>>& lamp_choices() const { return lamp_choices_; }

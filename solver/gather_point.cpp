@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kGradual = 0.25;  ///< neighbours that differ by less, as share of the brighter, need no more rays
+constexpr double kSmall = 0.25;    ///< of an opening [sr]
 constexpr std::size_t kMostOpenings = 8;  ///< openings that a point looks through by rays of their own
 
 /// What comes back along rays from one point.
@@ -307,7 +308,8 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
     const PolygonView polygon(p, n, light.problem.lights.openings[plan.openings[k]].triangles);
     if (!(polygon.solid_angle() > 0)) continue;
     const RayShares& shares = plan.opening_shares[k];
-    const Sum through = integrate(view, shares.empty() ? pattern.even_target() : pattern.target(), shares, plan.openings[k], target_sight(polygon),
+    const bool even = shares.empty() && polygon.solid_angle() < kSmall;  // the cosine varies over a large one
+    const Sum through = integrate(view, even ? pattern.even_target() : pattern.target(), shares, plan.openings[k], target_sight(polygon),
                                   [&](const Vec3& d, double per_share) { return dot(d, n) / kPi * per_share; }, rays);
     sum.E += through.E;
     sum.noise += through.noise;

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <ranges>
+#include <utility>
 
 #include "solver/form_factors/polygon.h"
 #include "solver/model/disjoint_sets.h"
@@ -69,7 +70,12 @@ bool continues(const PatchSet& patches, const EdgeUse& one, const EdgeUse& other
          0;
 }
 
-std::vector<Sheet> find_sheets(const PatchSet& patches) {
+/// An edge that one triangle has alone.
+struct FreeEdge {
+  std::uint32_t a, b, sheet;  ///< sheet: a number that its surface has to itself
+};
+
+std::vector<Sheet> find_sheets(const PatchSet& patches, std::vector<FreeEdge>& free) {
   const std::vector<EdgeUse> uses = opaque_edges(patches);
   DisjointSets joined(patches.triangle_count());
   std::vector<EdgeUse> rims;
@@ -85,8 +91,10 @@ std::vector<Sheet> find_sheets(const PatchSet& patches) {
         }
       if (ends) rims.push_back(uses[i]);
     }
+    if (last == first + 1) free.push_back({uses[first].low, uses[first].high, uses[first].triangle});
     first = last;
   }
+  for (FreeEdge& edge : free) edge.sheet = static_cast<std::uint32_t>(joined.find(edge.sheet));
   std::vector<std::uint32_t> sheet_of(patches.triangle_count(), 0xffffffff);
   std::vector<Sheet> sheets;
   for (const EdgeUse& rim : rims) {
@@ -165,6 +173,70 @@ std::vector<Vec3> without_straight_corners(const PatchSet& patches, const Chain&
   }
   return corners;
 }
+
+/// Plane loops of free edges of several surfaces: where a whole wall is missing.
+class LoopFinder {
+ public:
+  LoopFinder(const PatchSet& patches, std::vector<FreeEdge> edges) : patches_(patches), edges_(std::move(edges)) {
+    for (std::uint32_t e = 0; e < edges_.size(); ++e)
+      for (const std::uint32_t v : {edges_[e].a, edges_[e].b}) at_vertex_.emplace_back(v, e);
+    std::sort(at_vertex_.begin(), at_vertex_.end());
+  }
+
+  std::vector<Gap> find() {
+    std::vector<Gap> gaps;
+    for (std::size_t first = 0; first < at_vertex_.size() && steps_left_ > 0;) {
+      const std::uint32_t v = at_vertex_[first].first;
+      std::size_t last = first;
+      while (last < at_vertex_.size() && at_vertex_[last].first == v) ++last;
+      for (std::size_t i = first; i < last; ++i)
+        for (std::size_t j = first; j < i; ++j) walk(v, at_vertex_[i].second, at_vertex_[j].second, gaps);
+      first = last;
+    }
+    return gaps;
+  }
+
+ private:
+  Vec3 place(std::uint32_t v) const { return patches_.vertices[VertexId{std::size_t{v}}]; }
+  std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const { return edges_[e].a == v ? edges_[e].b : edges_[e].a; }
+  Vec3 along(std::uint32_t e, std::uint32_t from) const { return normalized(place(other_end(e, from)) - place(from)); }
+
+  /// Goes from v along `out` in the plane of both edges, until it comes back along `back`.
+  void walk(std::uint32_t v, std::uint32_t back, std::uint32_t out, std::vector<Gap>& gaps) {
+    if (edges_[back].sheet == edges_[out].sheet) return;
+    const Vec3 normal = cross(along(out, v), along(back, v));
+    if (length(normal) < 0.01) return;
+    const Vec3 n = normalized(normal);
+    Chain chain{{v}, true};
+    for (std::uint32_t at = other_end(out, v), edge = out; at != v && steps_left_ > 0; --steps_left_) {
+      // A loop is met at each of its corners: the smallest may start it.
+      if (at < v && is_corner(at)) return;
+      chain.vertex.push_back(at);
+      const auto next = std::ranges::find_if(around(at), [&](const auto& use) {
+        return use.second != edge && std::abs(dot(along(use.second, at), n)) < kSamePlane;
+      });
+      if (next == around(at).end()) return;
+      edge = next->second;
+      at = other_end(edge, at);
+      if (at == v && edge != back) return;
+    }
+    std::vector<Vec3> corners = without_straight_corners(patches_, chain);
+    if (corners.size() >= 3) gaps.push_back({std::move(corners), true});
+  }
+  std::ranges::subrange<std::vector<std::pair<std::uint32_t, std::uint32_t>>::const_iterator> around(std::uint32_t v) const {
+    return std::ranges::equal_range(at_vertex_, v, {}, [](const auto& use) { return use.first; });
+  }
+  bool is_corner(std::uint32_t v) const {
+    const auto uses = around(v);
+    return uses.size() == 2 && edges_[uses[0].second].sheet != edges_[uses[1].second].sheet &&
+           length(cross(along(uses[0].second, v), along(uses[1].second, v))) > 0.01;
+  }
+
+  const PatchSet& patches_;
+  std::vector<FreeEdge> edges_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_;  ///< vertex, edge; sorted
+  std::size_t steps_left_ = 2'000'000;
+};
 
 struct Segment {
   Vec3 a, b;
@@ -245,8 +317,9 @@ void find_same_planes(std::vector<PlaneRims>& planes, double tolerance) {
 }  // namespace
 
 std::vector<Gap> find_gaps(const PatchSet& patches, const RayScene& rays) {
-  const std::vector<Sheet> sheets = find_sheets(patches);
-  std::vector<Gap> gaps;
+  std::vector<FreeEdge> free;
+  const std::vector<Sheet> sheets = find_sheets(patches, free);
+  std::vector<Gap> gaps = LoopFinder(patches, std::move(free)).find();
   std::vector<PlaneRims> planes;
   struct Try {
     std::size_t plane;

@@ -11,10 +11,10 @@ namespace clerestory {
 /// A plane polygon of air that surfaces surround, corners counter-clockwise around one of its sides.
 struct Gap {
   std::vector<Vec3> corners;
-  bool is_hole = false;  ///< in one surface, all around
+  bool is_hole = false;  ///< edges of surfaces run all around it
 };
 
-/// Holes in plane surfaces, then strips between a rim and what stands opposite of it in the rim's plane; they may overlap.
+/// Holes in plane surfaces and where a whole wall of sheets is missing, then strips between a rim and what stands opposite of it in the rim's plane; they may overlap.
 std::vector<Gap> find_gaps(const PatchSet& patches, const RayScene& rays);
 
 }  // namespace clerestory

@@ -12,26 +12,30 @@ namespace {
 
 enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
 
-GatherQuality quality(const SolveOptions& options, RayBudget bundle, RayBudget target, int lamp_rays, int sun_rays) {
-  for (int* rays : {&bundle.rays, &bundle.most_rays, &target.rays, &target.most_rays}) *rays <<= options.tighten;
-  return {bundle, target, lamp_rays, sun_rays};
+GatherQuality quality(const SolveOptions& options, RayBudget bundle, RayBudget opening, RayBudget panel, int lamp_rays, int sun_rays) {
+  for (int* rays : {&bundle.rays, &bundle.most_rays, &opening.rays, &opening.most_rays,
+                    &panel.rays, &panel.most_rays}) *rays <<= options.tighten;
+  return {bundle, opening, panel, lamp_rays, sun_rays};
 }
 
 GatherQuality sensor_quality(const SolveOptions& options) {
   switch (options.accuracy) {
     case Accuracy::draft:
-      return quality(options, {16, 256, 512}, {8, 64, 256}, 64, 16);
+      return quality(options, {16, 256, 512}, {8, 64, 256}, {8, 64, 128}, 64, 16);
     case Accuracy::standard:
-      return quality(options, {16, 256, 2048}, {16, 256, 2048}, 256, 32);
+      return quality(options, {16, 256, 2048}, {16, 256, 2048, 7}, {16, 256, 2048, 7}, 256, 32);
     case Accuracy::fine:
-      return quality(options, {16, 1024, 8192}, {16, 1024, 8192}, 512, 64);
+      return quality(options, {16, 1024, 8192}, {16, 256, 4096, 7}, {16, 256, 4096, 7}, 512, 64);
   }
   return {};
 }
 
 /// Paths meet reflected light on their way; a gather looks it up, and bright patches are lamps to it.
 Illumination illumination(const Problem& problem, const Solution& solution) {
-  return solution.std_error.value.empty() ? Illumination(problem, solution.B) : Illumination(problem);
+  if (!solution.std_error.value.empty()) return Illumination(problem);
+  Illumination light(problem, solution.B);
+  light.look_at_panels();
+  return light;
 }
 
 struct Place {
@@ -70,11 +74,11 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
 GatherQuality vertex_quality(const SolveOptions& options) {
   switch (options.accuracy) {
     case Accuracy::draft:
-      return quality(options, {8, 64, 64}, {4, 16, 64}, 32, 8);
+      return quality(options, {8, 64, 64}, {4, 16, 64}, {4, 16, 32}, 32, 8);
     case Accuracy::standard:
-      return quality(options, {16, 256, 768}, {8, 64, 256}, 128, 16);
+      return quality(options, {16, 256, 768}, {8, 64, 192}, {8, 64, 128}, 128, 16);
     case Accuracy::fine:
-      return quality(options, {16, 512, 2048}, {16, 256, 1024}, 128, 32);
+      return quality(options, {16, 512, 2048}, {16, 256, 1024}, {8, 64, 512}, 128, 32);
   }
   return {};
 }

@@ -17,18 +17,21 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kGradual = 0.25;  ///< neighbours that differ by less, as share of the brighter, need no more rays
-constexpr double kSmall = 0.25;    ///< of an opening [sr]
-constexpr std::size_t kMostOpenings = 8;  ///< openings that a point looks through by rays of their own
+constexpr double kWorthLooking = 0.1;  ///< share of the bright patches' light in those that are not in panels looked at
+constexpr double kLeastOfBest = 0.2;  ///< of the light of the best panel, else it has no rays of its own
+constexpr std::size_t kMostOpenings = 8, kMostPanels = 4;  ///< that a point looks at by rays of their own
+/// Owners of rays: openings and, from kPanels on, panels, by number.
+constexpr std::uint32_t kPanels = 0x80000000, kNobody = kNoOpening;
 
 /// What comes back along rays from one point.
 class View {
  public:
   View(const Illumination& light, const Vec3& p, const Frame& frame, int lamp_rays,
-       std::span<const std::uint32_t> openings)
-      : light_(light), p_(p), frame_(frame), lamp_rays_(lamp_rays), openings_(openings) {}
+       const GatherPlan& plan)
+      : light_(light), p_(p), frame_(frame), lamp_rays_(lamp_rays), plan_(plan) {}
 
-  /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the openings
-  /// or kNoOpening; 0 along the others. density[k]: rays of that kind per solid angle.
+  /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
+  /// openings or panels, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
   void look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
             std::span<Spectrum> values) const {
     std::array<Ray, 16> rays;
@@ -39,12 +42,12 @@ class View {
     for (std::size_t k = 0; k < directions.size(); ++k) {
       const Hit& hit = hits[k];
       values[k] = Spectrum(0.0);
-      if (owner_of(directions[k], hit.first) != owner) continue;
+      if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
       if (hit.escaped()) {
         values[k] = light_.sky(hit.direction(rays[k])) * kPi * hit.transmittance;
       } else if (hit.patch.valid()) {
         Spectrum back = light_.lamps.glow()[hit.patch];
-        if (owner == kNoOpening && lamp_rays_ > 0 && !hit.reflected && light_.lamps.is_explicit(hit.patch)) {
+        if (owner == kNobody && lamp_rays_ > 0 && !hit.reflected && light_.lamps.is_explicit(hit.patch)) {
           const double cos_patch = -dot(problem.patches.normal[hit.patch], directions[k]);
           const double lamp = lamp_rays_ * light_.lamps.density(hit.patch, p_, frame_.n, hit.distance, cos_patch, true);
           back *= density[k] / (density[k] + lamp);
@@ -54,8 +57,13 @@ class View {
     }
   }
 
-  std::uint32_t owner_of(const Vec3& direction, double distance) const {
-    return first_way_out(light_.problem.lights.openings, openings_, p_, direction, distance);
+  /// Of a ray that meets `patch`, if any, and the first surface at `distance`.
+  std::uint32_t owner_of(const Vec3& direction, double distance, PatchId patch) const {
+    const std::uint32_t opening =
+        first_way_out(light_.problem.lights.openings, plan_.openings, p_, direction, distance);
+    if (opening != kNoOpening || !patch.valid() || plan_.panels.empty()) return opening;
+    const std::uint32_t panel = light_.panels.of(patch);
+    return std::ranges::find(plan_.panels, panel) == plan_.panels.end() ? kNobody : kPanels + panel;
   }
 
  private:
@@ -63,7 +71,7 @@ class View {
   Vec3 p_;
   const Frame& frame_;
   int lamp_rays_;
-  std::span<const std::uint32_t> openings_;
+  const GatherPlan& plan_;
 };
 
 int lamp_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan) {
@@ -126,12 +134,12 @@ struct Sum {
   double noise = 0;  ///< variance by the differences of neighbouring rays
 };
 
-/// Mean over the unit square of w pi L, along the rays that belong to `owner`.
+/// Mean over the unit square of w (pi L - mean), L along the rays that belong to `owner`, else 0.
 ///   sight(point)                   direction, and solid angle there for each share of the square
 ///   weight(direction, per_share)   w
 template <class Value, class Sight, class Weight>
 Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& shares, std::uint32_t owner,
-              const Sight& sight, const Weight& weight, unsigned long long& rays) {
+              const Spectrum& mean, const Sight& sight, const Weight& weight, unsigned long long& rays) {
   std::array<Vec3, 16> directions;
   std::array<double, 16> density, factor;
   std::array<Spectrum, 16> values;
@@ -139,7 +147,7 @@ Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& sh
   Sum sum;
   const auto flush = [&] {
     view.look(std::span(directions).first(queued), density, owner, std::span(values).first(queued));
-    for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * factor[k];
+    for (std::size_t k = 0; k < queued; ++k) sum.E += (values[k] - mean) * factor[k];
     for (std::size_t k = 0; k + 1 < queued; k += 2) {
       const double difference = luminous_mean(values[k]) * factor[k] - luminous_mean(values[k + 1]) * factor[k + 1];
       sum.noise += difference * difference;
@@ -163,33 +171,32 @@ Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& sh
   return sum;
 }
 
-/// What pilot rays find in each stratum, luminous means; 0 where they do not belong to `owner`.
+/// What pilot rays find in each stratum; 0 where they do not belong to `owner`.
 template <class Value, class Sight>
-std::vector<double> pilot_values(const View& view, const Strata<Value>& strata, std::uint32_t owner,
+std::vector<Spectrum> pilot_values(const View& view, const Strata<Value>& strata, std::uint32_t owner,
                                  const Sight& sight, unsigned long long& rays) {
   const int count = strata.budget().strata();
   const double share = 1.0 / (count << strata.budget().least());
-  std::vector<double> found(static_cast<std::size_t>(count));
+  std::vector<Spectrum> found(static_cast<std::size_t>(count));
   std::array<Vec3, 16> directions;
   std::array<double, 16> density;
-  std::array<Spectrum, 16> values;
   for (int first = 0; first < count; first += 16) {
     for (int k = 0; k < 16; ++k) {
       const auto [direction, per_share] = sight(strata.pilot(first + k));
       directions[static_cast<std::size_t>(k)] = direction;
       density[static_cast<std::size_t>(k)] = 1 / (share * per_share);
     }
-    view.look(directions, density, owner, values);
-    for (int k = 0; k < 16; ++k)
-      found[static_cast<std::size_t>(first + k)] = luminous_mean(values[static_cast<std::size_t>(k)]);
+    view.look(directions, density, owner, std::span(found).subspan(static_cast<std::size_t>(first), 16));
   }
   rays += static_cast<unsigned>(count);
   return found;
 }
 
 /// More rays where neighbours differ. wraps: the last column of the grid is a neighbour of the first.
-RayShares shares_by(const std::vector<double>& pilot, const RayBudget& budget, bool wraps) {
+RayShares shares_by(const std::vector<Spectrum>& found, const RayBudget& budget, bool wraps) {
   const int g = budget.grid;
+  std::vector<double> pilot(found.size());
+  std::ranges::transform(found, pilot.begin(), [](const Spectrum& x) { return luminous_mean(x); });
   double sum_of_differences = 0, sum = 0;
   std::vector<double> difference(pilot.size());
   for (int i = 0; i < g; ++i)
@@ -225,7 +232,7 @@ auto bundle_sight(const Frame& frame) {
     return PolygonView::Sight{frame.to_world(d[0], d[1], d[2]), kPi / std::max(1e-6, static_cast<double>(d[2]))};
   };
 }
-auto target_sight(const PolygonView& polygon) {
+auto area_sight(const PolygonView& polygon) {
   return [&polygon](const std::array<float, 2>& at) { return polygon.look(at[0], at[1]); };
 }
 
@@ -246,7 +253,7 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
       segments.set(lane, p, s.density > 0 ? s.end : p);
       if (!(s.density > 0)) continue;
       const Vec3 d = normalized(s.end - p);
-      if (view.owner_of(d, length(s.end - p)) != kNoOpening) continue;  // rays through that opening find it
+      if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
       const std::size_t rays = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
       const double bundle = static_cast<double>(rays) * budget.strata() * dot(frame.n, d) / kPi;
       const double lamp = count * s.density;
@@ -268,31 +275,48 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
 
 bool wants_plan(const Illumination& light, const GatherPattern& pattern) {
   const RayBudget& bundle = pattern.quality().bundle;
+  if (!light.panels.shape.empty()) return true;
   return !light.sky.dark() && (bundle.deepest() > bundle.least() || !light.problem.lights.openings.empty());
 }
 
 GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                        unsigned long long& rays) {
   const Frame frame(n);
-  const std::vector<Opening>& openings = light.problem.lights.openings;
   GatherPlan plan;
-  plan.looks_for_lamps = sees_lamps(light, p, n, pattern, rays);
-  for (const std::uint32_t k : openings_over(openings, p, n, kMostOpenings)) {
-    // Alone: what it shares with others goes to one of them in the end.
-    const PolygonView polygon(p, n, openings[k].triangles);
-    if (!(polygon.solid_angle() > 0)) continue;
-    const std::array<std::uint32_t, 1> alone{k};
-    const std::vector<double> found =
-        pilot_values(View(light, p, frame, 0, alone), pattern.target(), k, target_sight(polygon), rays);
-    if (std::ranges::none_of(found, [](double x) { return x > 0; })) continue;
-    plan.openings.push_back(k);
-    plan.opening_shares.push_back(shares_by(found, pattern.target().budget(), false));
+  // Each alone: what it shares with others goes to one of them in the end.
+  const auto look_at = [&](const LightArea& area, std::uint32_t owner, const GatherPlan& alone,
+                           const Strata<std::array<float, 2>>& strata, std::vector<std::uint32_t>& numbers,
+                           std::vector<GatherPlan::Look>& looks) {
+    const PolygonView polygon(p, n, area.triangles);
+    if (!(polygon.solid_angle() > 0)) return;
+    const std::vector<Spectrum> found =
+        pilot_values(View(light, p, frame, 0, alone), strata, owner, area_sight(polygon), rays);
+    Spectrum mean(0.0);
+    for (const Spectrum& x : found) mean += x / static_cast<double>(found.size());
+    if (mean.is_black()) return;
+    numbers.push_back(owner & ~kPanels);
+    looks.push_back({shares_by(found, strata.budget(), false), mean});
+  };
+  const std::vector<LightArea>& openings = light.problem.lights.openings;
+  for (const std::uint32_t k : areas_over(openings, p, n, kMostOpenings, 0)) {
+    GatherPlan alone;
+    alone.openings = {k};
+    look_at(openings[k], k, alone, pattern.opening(), plan.openings, plan.opening_looks);
   }
+  for (const std::uint32_t k : areas_over(light.panels.shape, p, n, kMostPanels, kLeastOfBest)) {
+    GatherPlan alone;
+    alone.panels = {k};
+    look_at(light.panels.shape[k], kPanels + k, alone, pattern.panel(), plan.panels, plan.panel_looks);
+  }
+  double left = light.panels.all_flux;
+  for (const std::uint32_t k : plan.panels) left -= light.panels.flux[k];
+  plan.looks_for_lamps = (light.panels.shape.empty() || left > kWorthLooking * light.panels.all_flux) &&
+                         (light.sky.dark() || sees_lamps(light, p, n, pattern, rays));
   const Strata<std::array<float, 3>>& bundle = pattern.bundle();
-  const bool adapts = bundle.budget().deepest() > bundle.budget().least();
+  const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
   if (adapts && sees_edge_of_sky(light, p, frame, pattern, plan.openings, rays)) {
-    const View view(light, p, frame, lamp_rays(light, pattern, plan), plan.openings);
-    plan.bundle = shares_by(pilot_values(view, bundle, kNoOpening, bundle_sight(frame), rays), bundle.budget(), true);
+    const View view(light, p, frame, lamp_rays(light, pattern, plan), plan);
+    plan.bundle = shares_by(pilot_values(view, bundle, kNobody, bundle_sight(frame), rays), bundle.budget(), true);
   }
   return plan;
 }
@@ -301,19 +325,24 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
                         const GatherPlan& plan, unsigned long long& rays) {
   const int to_lamps = lamp_rays(light, pattern, plan);
   const Frame frame(n);
-  const View view(light, p, frame, to_lamps, plan.openings);
-  Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNoOpening, bundle_sight(frame),
+  const View view(light, p, frame, to_lamps, plan);
+  Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNobody, Spectrum(0.0), bundle_sight(frame),
                       [](const Vec3&, double) { return 1.0; }, rays);
-  for (std::size_t k = 0; k < plan.openings.size(); ++k) {
-    const PolygonView polygon(p, n, light.problem.lights.openings[plan.openings[k]].triangles);
-    if (!(polygon.solid_angle() > 0)) continue;
-    const RayShares& shares = plan.opening_shares[k];
-    const bool even = shares.empty() && polygon.solid_angle() < kSmall;  // the cosine varies over a large one
-    const Sum through = integrate(view, even ? pattern.even_target() : pattern.target(), shares, plan.openings[k], target_sight(polygon),
-                                  [&](const Vec3& d, double per_share) { return dot(d, n) / kPi * per_share; }, rays);
-    sum.E += through.E;
-    sum.noise += through.noise;
-  }
+  const auto look_at = [&](const LightArea& area, std::uint32_t owner, const GatherPlan::Look& look,
+                           const Strata<std::array<float, 2>>& strata) {
+    const PolygonView polygon(p, n, area.triangles);
+    if (!(polygon.solid_angle() > 0)) return;
+    const bool few = look.shares.empty() && strata.budget().rays > pattern.even().budget().rays;
+    const Sum found = integrate(view, few ? pattern.even() : strata, look.shares, owner, look.mean, area_sight(polygon),
+                                [&](const Vec3& d, double per_share) { return dot(d, n) / kPi * per_share; }, rays);
+    sum.E += found.E + look.mean * form_factor(area, p, n);
+    sum.noise += found.noise;
+  };
+  for (std::size_t k = 0; k < plan.openings.size(); ++k)
+    look_at(light.problem.lights.openings[plan.openings[k]], plan.openings[k], plan.opening_looks[k],
+            pattern.opening());
+  for (std::size_t k = 0; k < plan.panels.size(); ++k)
+    look_at(light.panels.shape[plan.panels[k]], kPanels + plan.panels[k], plan.panel_looks[k], pattern.panel());
 
   PointLight at{sum.E, Spectrum(0.0), std::sqrt(sum.noise)};
   if (to_lamps > 0) {

@@ -25,8 +25,13 @@ using RayShares = std::vector<std::uint8_t>;
 struct GatherPlan {
   RayShares bundle;
   bool looks_for_lamps = true;            ///< by shadow rays; else bright patches are left to the bundle
-  std::vector<std::uint32_t> openings;    ///< looked through by rays of their own
-  std::vector<RayShares> opening_shares;  ///< of each of them
+  /// How an opening or a panel is looked at.
+  struct Look {
+    RayShares shares;
+    Spectrum mean;  ///< pi times the radiance that comes from it, roughly [W/m2]
+  };
+  std::vector<std::uint32_t> openings, panels;      ///< looked at by rays of their own
+  std::vector<Look> opening_looks, panel_looks;  ///< of each of them
 };
 
 /// Where no sky looks in, bright patches are the sharpest contrast, and those have rays of their own.
@@ -36,9 +41,11 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 
 /// Irradiance at p (lifted) on a plane of unit normal n.
 ///
-/// Luminaires and sun by shadow rays; bright patches, glowing or lit, by shadow rays and by the bundle, weighted by the
-/// balance heuristic. What lies behind the openings of the plan by rays through them, and nothing else: a ray belongs to
-/// the first of them that it passes. The rest by a bundle that looks up B (or the sky) where its rays land.
+/// Luminaires and sun by shadow rays. What lies behind the openings of the plan by rays through them, and its panels by
+/// rays at them, and by nothing else: a ray belongs to the first of the openings that it passes, else to the panel that it
+/// meets. Only what differs from the mean that the plan knows is left to chance: form factors times that mean are closed
+/// forms, so an even sky or lamp that nothing hides is exact. Other bright patches, glowing or lit, by shadow rays and by the bundle, weighted by the balance heuristic; the
+/// rest by the bundle, which looks up B (or the sky) where its rays land.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.

@@ -38,7 +38,7 @@ std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
 class Gatherer {
  public:
   Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options)
-      : light_(problem, B),
+      : light_(illumination(problem, B)),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
@@ -73,6 +73,11 @@ class Gatherer {
   }
 
  private:
+  static Illumination illumination(const Problem& problem, const Field& B) {
+    Illumination light(problem, B);
+    light.look_at_panels();
+    return light;
+  }
   bool is_worth_it(std::size_t p) const { return p >= worth_.size() || worth_[p]; }
   void gather_at(std::size_t p, VertexField& field, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();

@@ -216,12 +216,12 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
                           std::vector<std::uint32_t>& looked_at) {
   constexpr int kPilotRays = 8;
   const Problem& problem = light.problem;
-  const std::vector<Opening>& openings = problem.lights.openings;
+  const std::vector<LightArea>& openings = problem.lights.openings;
   const Vec3 n = problem.patches.normal[patch];
   const auto corners = problem.patches.corner_positions(PatchId{patch});
-  std::vector<std::uint32_t> over = openings_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings);
+  std::vector<std::uint32_t> over = areas_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings, 0);
   for (const Vec3& corner : corners)  // all of a patch may see of it is from one corner
-    for (const std::uint32_t k : openings_over(openings, corner, n, 2)) over.push_back(k);
+    for (const std::uint32_t k : areas_over(openings, corner, n, 2, 0)) over.push_back(k);
   std::sort(over.begin(), over.end());
   over.erase(std::unique(over.begin(), over.end()), over.end());
 

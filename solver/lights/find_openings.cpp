@@ -30,7 +30,7 @@ class Judge {
  public:
   Judge(const PatchSet& patches, const RayScene& rays, const SkyRadiance& sky) : patches_(patches), rays_(rays), sky_(sky) {}
 
-  SkySeen sky_from(const Opening& o, const Vec3& side, int count, std::uint64_t key) const {
+  SkySeen sky_from(const LightArea& o, const Vec3& side, int count, std::uint64_t key) const {
     SkySeen seen;
     for (int k = 0; k < count; ++k) {
       const Ray ray = ray_through(o, side, key, static_cast<std::uint32_t>(k), rays_.lift());
@@ -44,7 +44,7 @@ class Judge {
   }
 
   /// Turns the normal into the room. returns the share of rays out that see sky; 0: no opening between a room and it.
-  double judge(Opening& o, std::uint64_t key) const {
+  double judge(LightArea& o, std::uint64_t key) const {
     double share = 0;
     for (const int count : {kFewRays, kRays}) {
       SkySeen front = sky_from(o, o.normal, count, key), back = sky_from(o, -o.normal, count, key + 2);
@@ -61,14 +61,14 @@ class Judge {
   }
 
   /// Whether sky is seen through it that the others do not show.
-  bool shows_more(const Opening& o, std::span<const Opening> others, std::uint64_t key) const {
+  bool shows_more(const LightArea& o, std::span<const LightArea> others, std::uint64_t key) const {
     int more = 0;
     for (int k = 0; k < kRays; ++k) {
       // From a little inside: an opening in the same plane is passed as well.
       const Ray ray = ray_through(o, -o.normal, key, static_cast<std::uint32_t>(k), rays_.lift());
       if (!rays_.first_hit(patches_, ray).escaped()) continue;
       const Vec3 inside = ray.origin - ray.direction * (1e-5 * rays_.diameter());
-      more += std::ranges::none_of(others, [&](const Opening& other) { return way_out(other, inside, ray.direction) >= 0; });
+      more += std::ranges::none_of(others, [&](const LightArea& other) { return way_out(other, inside, ray.direction) >= 0; });
     }
     return more > kNew * kRays;
   }
@@ -80,8 +80,8 @@ class Judge {
 };
 
 /// No opening when it has no area.
-Opening opening_across(const Gap& gap) {
-  Opening o;
+LightArea opening_across(const Gap& gap) {
+  LightArea o;
   const Vec3 area = vector_area(gap.corners);
   o.area = length(area);
   if (!(o.area > 0)) return o;
@@ -94,18 +94,18 @@ Opening opening_across(const Gap& gap) {
 
 }  // namespace
 
-std::vector<Opening> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights) {
+std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights) {
   if (!lights.sky || patches.triangle_count() > kMostTriangles) return {};
   const SkyRadiance sky(lights);
   const Judge judge(patches, rays, sky);
   struct Candidate {
-    Opening opening;
+    LightArea opening;
     bool is_hole;
     double sky = 0;  ///< share of the rays out that see it; 0: no opening
   };
   std::vector<Candidate> candidates;
   for (const Gap& gap : find_gaps(patches, rays)) {
-    Opening o = opening_across(gap);
+    LightArea o = opening_across(gap);
     if (o.area > 0 && !o.triangles.empty()) candidates.push_back({std::move(o), gap.is_hole});
   }
   parallel_for(candidates.size(), 8, [&](std::size_t from, std::size_t to) {
@@ -118,7 +118,7 @@ std::vector<Opening> find_openings(const PatchSet& patches, const RayScene& rays
     if ((a.sky > kWideOpen) != (b.sky > kWideOpen)) return a.sky > b.sky;
     return a.opening.area > b.opening.area;
   });
-  std::vector<Opening> openings;
+  std::vector<LightArea> openings;
   for (std::size_t k = 0; k < candidates.size() && openings.size() < kMostOpenings; ++k)
     if (judge.shows_more(candidates[k].opening, openings, stream_key(kGapRays + 1, k)))
       openings.push_back(std::move(candidates[k].opening));

@@ -9,7 +9,7 @@
 namespace clerestory {
 namespace {
 
-LightBounds bounds_of(const Opening& opening) {
+LightBounds bounds_of(const LightArea& opening) {
   LightBounds b{opening.centre, opening.centre, opening.normal, 0, std::numbers::pi * opening.area * opening.brightness};
   for (const auto& triangle : opening.triangles)
     for (const Vec3& c : triangle) {
@@ -23,7 +23,7 @@ LightBounds bounds_of(const Opening& opening) {
 
 OpeningSampler::OpeningSampler(const Problem& problem) : problem_(problem) {
   std::vector<LightBounds> bounds;
-  for (const Opening& opening : problem.lights.openings) bounds.push_back(bounds_of(opening));
+  for (const LightArea& opening : problem.lights.openings) bounds.push_back(bounds_of(opening));
   tree_ = LightTree(bounds, Falloff::cosine, problem.rays.diameter());
 }
 
@@ -44,7 +44,7 @@ double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d) c
 double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d, std::uint32_t but) const {
   double sum = 0;
   for (std::uint32_t k = 0; k < problem_.lights.openings.size(); ++k) {
-    const Opening& opening = problem_.lights.openings[k];
+    const LightArea& opening = problem_.lights.openings[k];
     if (k == but || way_out(opening, p, d) < 0) continue;
     const double solid_angle = PolygonView(p, n, opening.triangles).solid_angle();
     if (solid_angle > 0) sum += tree_.probability(k, p, n) / solid_angle;

@@ -10,7 +10,7 @@
 
 namespace clerestory {
 
-double way_out(const Opening& opening, const Vec3& p, const Vec3& d) {
+double way_out(const LightArea& opening, const Vec3& p, const Vec3& d) {
   const double towards = -dot(d, opening.normal);
   if (!(towards > 0)) return -1;
   const double t = dot(p - opening.centre, opening.normal) / towards;
@@ -25,7 +25,7 @@ double way_out(const Opening& opening, const Vec3& p, const Vec3& d) {
   return -1;
 }
 
-std::uint32_t first_way_out(std::span<const Opening> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
+std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
                             const Vec3& d, double distance) {
   for (const std::uint32_t k : numbers) {
     const double out = way_out(openings[k], p, d);
@@ -34,7 +34,7 @@ std::uint32_t first_way_out(std::span<const Opening> openings, std::span<const s
   return kNoOpening;
 }
 
-double most_it_gives(const Opening& opening, const Vec3& p, const Vec3& n) {
+double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n) {
   const Vec3 d = opening.centre - p;
   const double height = -dot(d, opening.normal), above = dot(d, n) + opening.radius;
   if (!(height > 0) || !(above > 0)) return 0;
@@ -44,13 +44,13 @@ double most_it_gives(const Opening& opening, const Vec3& p, const Vec3& n) {
   return opening.area * cos_p * cos_o / (std::numbers::pi * nearest * nearest);
 }
 
-double form_factor(const Opening& opening, const Vec3& p, const Vec3& n) {
+double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n) {
   double F = 0;
   for (const auto& triangle : opening.triangles) F += point_to_polygon(p, n, triangle);
   return F;
 }
 
-Ray ray_through(const Opening& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {
+Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {
   const auto u = sobol4(k, key);
   double left = sobol4(k, key + 1)[0] * opening.area;
   const auto* triangle = &opening.triangles.front();
@@ -63,20 +63,21 @@ Ray ray_through(const Opening& opening, const Vec3& side, std::uint64_t key, std
   return {point_on_triangle(*triangle, u[0], u[1]) + side * lift, cosine_direction(Frame(side), u[2], u[3])};
 }
 
-std::vector<std::uint32_t> openings_over(std::span<const Opening> openings, const Vec3& p, const Vec3& n,
-                                         std::size_t most) {
+std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
+                                         std::size_t most, double least_of_best) {
   constexpr double kNothing = 1e-9;
-  std::vector<std::pair<double, std::uint32_t>> found;  // by form factor, the largest first
+  std::vector<std::pair<double, std::uint32_t>> found;  // by light, the most first
   for (std::uint32_t k = 0; k < openings.size(); ++k) {
-    const double bound = most_it_gives(openings[k], p, n);
-    if (!(bound > kNothing) || (found.size() == most && bound <= -found.back().first)) continue;
+    const double L = openings[k].brightness, bound = most_it_gives(openings[k], p, n);
+    if (!(bound > kNothing) || (found.size() == most && bound * L <= -found.back().first)) continue;
     const double F = form_factor(openings[k], p, n);
     if (!(F > kNothing)) continue;
-    found.insert(std::upper_bound(found.begin(), found.end(), std::pair{-F, k}), {-F, k});
+    found.insert(std::upper_bound(found.begin(), found.end(), std::pair{-F * L, k}), {-F * L, k});
     if (found.size() > most) found.pop_back();
   }
   std::vector<std::uint32_t> numbers;
-  for (const auto& [F, k] : found) numbers.push_back(k);
+  for (const auto& [F, k] : found)
+    if (F <= least_of_best * found.front().first) numbers.push_back(k);
   std::sort(numbers.begin(), numbers.end());
   return numbers;
 }

@@ -10,28 +10,29 @@
 namespace clerestory {
 
 /// Where the ray from p along d (unit) passes the opening on its way out [m]; negative: it does not.
-double way_out(const Opening& opening, const Vec3& p, const Vec3& d);
+double way_out(const LightArea& opening, const Vec3& p, const Vec3& d);
 
 inline constexpr std::uint32_t kNoOpening = 0xffffffff;
 
 /// The first of those named by `numbers` that the ray passes before it meets a surface at `distance`, and that its light
 /// therefore belongs to; kNoOpening: to none.
-std::uint32_t first_way_out(std::span<const Opening> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
+std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
                             const Vec3& d, double distance);
 
 /// Upper bound of the form factor [1] from a surface element at p with normal n to the opening; 0 from outside of it.
-double most_it_gives(const Opening& opening, const Vec3& p, const Vec3& n);
+double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n);
 
 /// Form factor [1] of the opening when nothing blocks it; 0 from outside of it.
-double form_factor(const Opening& opening, const Vec3& p, const Vec3& n);
+double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n);
 
-/// The openings that may matter at p: up to `most` of the largest form factors, in the order of their numbers.
-std::vector<std::uint32_t> openings_over(std::span<const Opening> openings, const Vec3& p, const Vec3& n,
-                                         std::size_t most);
+/// The openings (or panels) that may matter at p: up to `most` of the largest form factors times brightness, in the order of
+/// their numbers; none that gives less than the share least_of_best of the first.
+std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
+                                         std::size_t most, double least_of_best);
 
 /// Ray k of a sequence through points all over the opening, cosine-distributed around `side`, which is its normal or the
 /// opposite.
-Ray ray_through(const Opening& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift);
+Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift);
 
 /// The gaps in the surfaces that have the sky on one side and a room on the other: windows, doors, rooflights, slits.
 ///
@@ -42,6 +43,6 @@ Ray ray_through(const Opening& opening, const Vec3& side, std::uint64_t key, std
 /// patches  conforming; rays: of them. lights: local frame; empty result without a sky.
 /// Threads: same result for any thread count. Cost: O(T log T) and 10 rays an edge of a surface; models of more than two
 /// million triangles are not searched.
-std::vector<Opening> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights);
+std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights);
 
 }  // namespace clerestory

@@ -69,13 +69,13 @@ struct Sun {
   std::uint32_t mirror = kNoMirror;  ///< as of PointLuminaire
 };
 
-/// A gap between surfaces through which the sky looks into a room. Only a hint where to look: light that comes another
-/// way is found as well.
-struct Opening {
-  std::vector<std::array<Vec3, 3>> triangles;  ///< of the plane polygon across the gap, local frame [m]
-  Vec3 centre, normal;                         ///< normal: unit, into the room
+/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room, or
+/// bright patches that lie together. Only a hint where to look: what it misses is found as well.
+struct LightArea {
+  std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, counter-clockwise around the normal, local frame [m]
+  Vec3 centre, normal;                         ///< normal: unit, to where the light goes
   double radius = 0, area = 0;                 ///< radius: farthest point from the centre [m], area [m2]
-  double brightness = 0;                       ///< mean radiance of the sky seen through it [W/(m2 sr)]
+  double brightness = 0;                       ///< mean radiance that comes out of it [W/(m2 sr)]
 };
 
 struct Lights {
@@ -84,7 +84,7 @@ struct Lights {
   std::vector<WebLuminaire> webs;
   std::optional<Sky> sky;
   std::vector<Sun> suns;  ///< the scene's sun, and directional lights of a glTF file
-  std::vector<Opening> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
+  std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
 
   std::size_t lamp_count() const { return points.size() + spots.size() + webs.size(); }
   bool empty() const { return lamp_count() == 0 && !sky && suns.empty(); }

@@ -12,20 +12,20 @@ namespace {
 
 enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
 
-GatherQuality quality(const SolveOptions& options, RayBudget bundle, RayBudget opening, RayBudget panel, int lamp_rays, int sun_rays) {
-  for (int* rays : {&bundle.rays, &bundle.most_rays, &opening.rays, &opening.most_rays,
-                    &panel.rays, &panel.most_rays}) *rays <<= options.tighten;
-  return {bundle, opening, panel, lamp_rays, sun_rays};
+GatherQuality quality(const SolveOptions& options, RayBudget bundle, AreaBudget area, int lamp_rays, int sun_rays) {
+  for (int* rays : {&bundle.rays, &bundle.most_rays}) *rays <<= options.tighten;
+  area.most_rays <<= options.tighten;
+  return {bundle, area, lamp_rays, sun_rays};
 }
 
 GatherQuality sensor_quality(const SolveOptions& options) {
   switch (options.accuracy) {
     case Accuracy::draft:
-      return quality(options, {16, 256, 512}, {8, 64, 256}, {8, 64, 128}, 64, 16);
+      return quality(options, {16, 256, 512}, {1, 3, 0.01, 512}, 64, 16);
     case Accuracy::standard:
-      return quality(options, {16, 256, 2048}, {16, 256, 2048, 7}, {16, 256, 2048, 7}, 256, 32);
+      return quality(options, {16, 256, 2048}, {2, 5, 0.003, 4096}, 256, 32);
     case Accuracy::fine:
-      return quality(options, {16, 1024, 8192}, {16, 256, 4096, 7}, {16, 256, 4096, 7}, 512, 64);
+      return quality(options, {16, 1024, 8192}, {2, 5, 0.0015, 8192}, 512, 64);
   }
   return {};
 }
@@ -74,11 +74,11 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
 GatherQuality vertex_quality(const SolveOptions& options) {
   switch (options.accuracy) {
     case Accuracy::draft:
-      return quality(options, {8, 64, 64}, {4, 16, 64}, {4, 16, 32}, 32, 8);
+      return quality(options, {8, 64, 64}, {0, 1, 0.02, 128}, 32, 8);
     case Accuracy::standard:
-      return quality(options, {16, 256, 768}, {8, 64, 192}, {8, 64, 128}, 128, 16);
+      return quality(options, {16, 256, 768}, {1, 3, 0.01, 512}, 128, 16);
     case Accuracy::fine:
-      return quality(options, {16, 512, 2048}, {16, 256, 1024}, {8, 64, 512}, 128, 32);
+      return quality(options, {16, 512, 2048}, {1, 4, 0.005, 2048}, 128, 32);
   }
   return {};
 }

@@ -9,20 +9,18 @@
 namespace clerestory {
 namespace {
 
+constexpr int kMostHalvings = 4;  ///< a stratum of interest gets up to 16 times the least
+
 std::array<float, 3> local_direction(double u, double v) {
   const double r = std::sqrt(u), phi = 2 * std::numbers::pi * v;
   return {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
           static_cast<float>(std::sqrt(std::max(0.0, 1 - u)))};
 }
 
-constexpr RayBudget kEven{8, 64, 64};
-
-std::array<float, 2> itself(double u, double v) { return {static_cast<float>(u), static_cast<float>(v)}; }
-
 }  // namespace
 
 int RayBudget::least() const { return std::bit_width(static_cast<unsigned>(std::max(1, rays / strata()))) - 1; }
-int RayBudget::deepest() const { return most_rays > rays ? least() + halvings : least(); }
+int RayBudget::deepest() const { return most_rays > rays ? least() + kMostHalvings : least(); }
 
 template <class Value>
 Strata<Value>::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_key, Value (*map)(double, double))
@@ -45,9 +43,7 @@ Strata<Value>::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t 
 GatherPattern::GatherPattern(const GatherQuality& quality, std::uint64_t seed)
     : quality_(quality),
       bundle_(quality.bundle, stream_key(seed, 1), stream_key(seed, 2), local_direction),
-      opening_(quality.opening, stream_key(seed, 5), stream_key(seed, 6), itself),
-      panel_(quality.panel, stream_key(seed, 8), stream_key(seed, 9), itself),
-      even_(kEven, stream_key(seed, 10), stream_key(seed, 11), itself),
+      area_cells_(seed),
       sun_key_(stream_key(seed, 4)) {
   const std::uint64_t lamp_key = stream_key(seed, 3);
   for (int k = 0; k < quality.lamp_rays; ++k) {

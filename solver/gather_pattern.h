@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/area_cells.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
@@ -16,7 +17,6 @@ struct RayBudget {
   int grid = 16;         ///< grid x grid strata, a power of 2, at least 4
   int rays = 256;        ///< where the view is even: grid x grid x a power of 2
   int most_rays = 2048;  ///< about so many where it is not; no more than `rays`: no pilot
-  int halvings = 4;      ///< a stratum of interest gets up to 2^halvings times the least
 
   int strata() const { return grid * grid; }
   int least() const;
@@ -32,8 +32,7 @@ struct RayBudget {
 /// How many rays a point gets. Defaults suit a sensor.
 struct GatherQuality {
   RayBudget bundle{16, 1024, 4096};  ///< over the hemisphere
-  RayBudget opening{16, 256, 2048, 7};  ///< through each opening that matters
-  RayBudget panel{16, 256, 2048, 7}; ///< to each plane of bright patches that matters
+  AreaBudget area{};      ///< to each opening and each panel that matters
   int lamp_rays = 128;               ///< shadow rays to bright patches, a multiple of 16
   int sun_rays = 16;                 ///< to each sun
 };
@@ -70,10 +69,7 @@ class GatherPattern {
   const GatherQuality& quality() const { return quality_; }
   /// Directions in the frame of the normal (z), cosine-distributed.
   const Strata<std::array<float, 3>>& bundle() const { return bundle_; }
-  const Strata<std::array<float, 2>>& opening() const { return opening_; }
-  const Strata<std::array<float, 2>>& panel() const { return panel_; }
-  /// For what a pilot found even all over: few rays, in case it missed something.
-  const Strata<std::array<float, 2>>& even() const { return even_; }
+  const AreaCells& area_cells() const { return area_cells_; }
   /// Which light, and where on it, for each lamp ray.
   const std::vector<std::array<double, 3>>& lamp_choices() const { return lamp_choices_; }
   /// The same for pilot rays.
@@ -86,7 +82,7 @@ class GatherPattern {
  private:
   GatherQuality quality_;
   Strata<std::array<float, 3>> bundle_;
-  Strata<std::array<float, 2>> opening_, panel_, even_;
+  AreaCells area_cells_;
   std::vector<std::array<double, 3>> lamp_choices_, lamp_pilots_;
   std::uint64_t sun_key_;
 };

@@ -134,12 +134,12 @@ struct Sum {
   double noise = 0;  ///< variance by the differences of neighbouring rays
 };
 
-/// Mean over the unit square of w (pi L - mean), L along the rays that belong to `owner`, else 0.
+/// Mean over the unit square of w pi L, L along the rays that belong to `owner`, else 0.
 ///   sight(point)                   direction, and solid angle there for each share of the square
 ///   weight(direction, per_share)   w
 template <class Value, class Sight, class Weight>
 Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& shares, std::uint32_t owner,
-              const Spectrum& mean, const Sight& sight, const Weight& weight, unsigned long long& rays) {
+              const Sight& sight, const Weight& weight, unsigned long long& rays) {
   std::array<Vec3, 16> directions;
   std::array<double, 16> density, factor;
   std::array<Spectrum, 16> values;
@@ -147,7 +147,7 @@ Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& sh
   Sum sum;
   const auto flush = [&] {
     view.look(std::span(directions).first(queued), density, owner, std::span(values).first(queued));
-    for (std::size_t k = 0; k < queued; ++k) sum.E += (values[k] - mean) * factor[k];
+    for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * factor[k];
     for (std::size_t k = 0; k + 1 < queued; k += 2) {
       const double difference = luminous_mean(values[k]) * factor[k] - luminous_mean(values[k + 1]) * factor[k + 1];
       sum.noise += difference * difference;
@@ -232,8 +232,51 @@ auto bundle_sight(const Frame& frame) {
     return PolygonView::Sight{frame.to_world(d[0], d[1], d[2]), kPi / std::max(1e-6, static_cast<double>(d[2]))};
   };
 }
-auto area_sight(const PolygonView& polygon) {
-  return [&polygon](const std::array<float, 2>& at) { return polygon.look(at[0], at[1]); };
+
+/// Where to look at an area, how, and who else may own a ray.
+struct AreaView {
+  const View& view;
+  const PolygonView& polygon;
+  std::uint32_t owner;
+
+  /// Up to 16 points.
+  void look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,
+            std::span<PolygonView::Sight> sights) const {
+    std::array<Vec3, 16> directions;
+    std::array<double, 16> density{};  // counts for rays that belong to nobody only
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      sights[k] = polygon.look(points[k][0], points[k][1]);
+      directions[k] = sights[k].direction;
+    }
+    view.look(std::span(directions).first(points.size()), density, owner, values);
+  }
+};
+
+/// Irradiance from an area: what differs from the mean of the plan by a ray a cell, the mean itself in closed form.
+Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells, const LightArea& area, const Vec3& p,
+              const Vec3& n, unsigned long long& rays) {
+  Sum sum{plan.mean * form_factor(area, p, n), 0};
+  std::array<std::array<float, 2>, 16> points;
+  std::array<Spectrum, 16> values;
+  std::array<PolygonView::Sight, 16> sights;
+  for (std::size_t first = 0; first < plan.cells.size(); first += 16) {
+    const std::size_t count = std::min<std::size_t>(16, plan.cells.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const AreaCell& cell = plan.cells[first + k];
+      points[k] = cells.points(cell.grid)[cell.number];
+    }
+    view.look(std::span(points).first(count), std::span(values).first(count), sights);
+    double last = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& [direction, per_share] = sights[k];
+      const Spectrum E = (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan.cells[first + k].share());
+      sum.E += E;
+      if (k % 2 == 1) sum.noise += (luminous_mean(E) - last) * (luminous_mean(E) - last);
+      last = luminous_mean(E);
+    }
+  }
+  rays += plan.cells.size();
+  return sum;
 }
 
 Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
@@ -285,28 +328,33 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   GatherPlan plan;
   // Each alone: what it shares with others goes to one of them in the end.
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const GatherPlan& alone,
-                           const Strata<std::array<float, 2>>& strata, std::vector<std::uint32_t>& numbers,
-                           std::vector<GatherPlan::Look>& looks) {
+                           std::vector<std::uint32_t>& numbers, std::vector<AreaPlan>& plans) {
     const PolygonView polygon(p, n, area.triangles);
     if (!(polygon.solid_angle() > 0)) return;
-    const std::vector<Spectrum> found =
-        pilot_values(View(light, p, frame, 0, alone), strata, owner, area_sight(polygon), rays);
-    Spectrum mean(0.0);
-    for (const Spectrum& x : found) mean += x / static_cast<double>(found.size());
-    if (mean.is_black()) return;
+    const View view(light, p, frame, 0, alone);
+    const double others = light.panels.ambient / std::max(1e-12, form_factor(area, p, n));
+    AreaPlan found = plan_area(pattern.area_cells(), pattern.quality().area, others, [&](auto points, auto values) {
+      std::array<PolygonView::Sight, 16> sights;
+      for (std::size_t first = 0; first < points.size(); first += 16) {
+        const std::size_t count = std::min<std::size_t>(16, points.size() - first);
+        AreaView{view, polygon, owner}.look(points.subspan(first, count), values.subspan(first, count), sights);
+      }
+      rays += points.size();
+    });
+    if (found.mean.is_black()) return;
     numbers.push_back(owner & ~kPanels);
-    looks.push_back({shares_by(found, strata.budget(), false), mean});
+    plans.push_back(std::move(found));
   };
   const std::vector<LightArea>& openings = light.problem.lights.openings;
   for (const std::uint32_t k : areas_over(openings, p, n, kMostOpenings, 0)) {
     GatherPlan alone;
     alone.openings = {k};
-    look_at(openings[k], k, alone, pattern.opening(), plan.openings, plan.opening_looks);
+    look_at(openings[k], k, alone, plan.openings, plan.opening_plans);
   }
   for (const std::uint32_t k : areas_over(light.panels.shape, p, n, kMostPanels, kLeastOfBest)) {
     GatherPlan alone;
     alone.panels = {k};
-    look_at(light.panels.shape[k], kPanels + k, alone, pattern.panel(), plan.panels, plan.panel_looks);
+    look_at(light.panels.shape[k], kPanels + k, alone, plan.panels, plan.panel_plans);
   }
   double left = light.panels.all_flux;
   for (const std::uint32_t k : plan.panels) left -= light.panels.flux[k];
@@ -326,23 +374,19 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   const int to_lamps = lamp_rays(light, pattern, plan);
   const Frame frame(n);
   const View view(light, p, frame, to_lamps, plan);
-  Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNobody, Spectrum(0.0), bundle_sight(frame),
+  Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNobody, bundle_sight(frame),
                       [](const Vec3&, double) { return 1.0; }, rays);
-  const auto look_at = [&](const LightArea& area, std::uint32_t owner, const GatherPlan::Look& look,
-                           const Strata<std::array<float, 2>>& strata) {
+  const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
     const PolygonView polygon(p, n, area.triangles);
     if (!(polygon.solid_angle() > 0)) return;
-    const bool few = look.shares.empty() && strata.budget().rays > pattern.even().budget().rays;
-    const Sum found = integrate(view, few ? pattern.even() : strata, look.shares, owner, look.mean, area_sight(polygon),
-                                [&](const Vec3& d, double per_share) { return dot(d, n) / kPi * per_share; }, rays);
-    sum.E += found.E + look.mean * form_factor(area, p, n);
+    const Sum found = from_area({view, polygon, owner}, area_plan, pattern.area_cells(), area, p, n, rays);
+    sum.E += found.E;
     sum.noise += found.noise;
   };
   for (std::size_t k = 0; k < plan.openings.size(); ++k)
-    look_at(light.problem.lights.openings[plan.openings[k]], plan.openings[k], plan.opening_looks[k],
-            pattern.opening());
+    look_at(light.problem.lights.openings[plan.openings[k]], plan.openings[k], plan.opening_plans[k]);
   for (std::size_t k = 0; k < plan.panels.size(); ++k)
-    look_at(light.panels.shape[plan.panels[k]], kPanels + plan.panels[k], plan.panel_looks[k], pattern.panel());
+    look_at(light.panels.shape[plan.panels[k]], kPanels + plan.panels[k], plan.panel_plans[k]);
 
   PointLight at{sum.E, Spectrum(0.0), std::sqrt(sum.noise)};
   if (to_lamps > 0) {

@@ -25,13 +25,8 @@ using RayShares = std::vector<std::uint8_t>;
 struct GatherPlan {
   RayShares bundle;
   bool looks_for_lamps = true;            ///< by shadow rays; else bright patches are left to the bundle
-  /// How an opening or a panel is looked at.
-  struct Look {
-    RayShares shares;
-    Spectrum mean;  ///< pi times the radiance that comes from it, roughly [W/m2]
-  };
-  std::vector<std::uint32_t> openings, panels;      ///< looked at by rays of their own
-  std::vector<Look> opening_looks, panel_looks;  ///< of each of them
+  std::vector<std::uint32_t> openings, panels;       ///< looked at by rays of their own
+  std::vector<AreaPlan> opening_plans, panel_plans;  ///< of each of them; values are pi times the radiance [W/m2]
 };
 
 /// Where no sky looks in, bright patches are the sharpest contrast, and those have rays of their own.

@@ -109,14 +109,19 @@ std::vector<std::vector<std::uint32_t>> plane_groups(const PatchSet& patches, co
 Panels find_panels(const PatchSet& patches, const LightSampler& lamps) {
   const Field& glow = lamps.glow();
   std::vector<std::uint32_t> bright, glowing;
-  double brightest = 0;
+  double brightest = 0, dim_area = 0;
   Panels panels;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i) {
     brightest = std::max(brightest, luminous_mean(glow[i]));
-    if (!lamps.is_explicit(PatchId{std::size_t{i}})) continue;
+    if (!lamps.is_explicit(PatchId{std::size_t{i}})) {
+      panels.ambient += patches.area[i] * luminous_mean(glow[i]);
+      dim_area += patches.area[i];
+      continue;
+    }
     bright.push_back(i);
     panels.all_flux += patches.area[i] * luminous_mean(glow[i]);
   }
+  if (dim_area > 0) panels.ambient /= dim_area;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i)
     if (luminous_mean(glow[i]) > kDark * brightest) glowing.push_back(i);
   std::vector<std::vector<std::uint32_t>> groups = plane_groups(patches, glowing);

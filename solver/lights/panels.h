@@ -15,6 +15,7 @@ struct Panels {
   std::vector<LightArea> shape;          ///< hull of each panel's patches; the normal is theirs, brightness their mean
   std::vector<double> flux;              ///< that explicit patches of each send [W]
   std::vector<std::uint32_t> of_patch;   ///< N, panel or kNone; empty without any
+  double ambient = 0;                    ///< mean radiosity of all other patches [W/m2]
   double all_flux = 0;                   ///< of all explicit patches, in panels or not
   static constexpr std::uint32_t kNone = 0xffffffff;
 

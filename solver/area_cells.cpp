@@ -11,11 +11,11 @@
 namespace clerestory {
 namespace {
 
-constexpr double kGradual = 0.25;  ///< neighbours that differ by less, as share of the brighter, need no finer cells
+constexpr double kGradual = 0.15;  ///< neighbours that differ by less, as share of the brighter, need no finer cells
 
 /// Bits of x, each followed by a zero.
 std::uint32_t spread(std::uint32_t x) {
-  x = (x | x << 4) & 0x0f0f;
+  x = (x | x << 4) & 0x0f0f;  // of up to eight
   x = (x | x << 2) & 0x3333;
   return (x | x << 1) & 0x5555;
 }
@@ -40,44 +40,123 @@ std::vector<std::array<float, 2>> net(int grid, std::uint64_t key) {
   return points;
 }
 
-/// What the pilots found, by grid; where a grid was not looked at, the coarser one tells.
-class Found {
- public:
-  explicit Found(int first) : first_(first) {}
+constexpr int kNothing = -1;
 
-  void set(int grid, std::uint32_t number, float value) {
-    auto& values = values_[static_cast<std::size_t>(grid)];
-    if (values.empty()) values.assign(AreaCells::count(grid), -1.0f);
-    values[number] = value;
+/// Grids of pilots, coarse to fine, and what they found.
+class Pilots {
+ public:
+  Pilots(const AreaCells& cells, int first, const LookAtPoints& look) : cells_(cells), look_(look), first_(first) {
+    std::vector<std::uint32_t> all(AreaCells::count(first));
+    for (std::uint32_t c = 0; c < all.size(); ++c) all[c] = c;
+    look_at(first, all);
   }
-  float at(int grid, std::uint32_t number) const {
-    const auto& values = values_[static_cast<std::size_t>(grid)];
-    if (grid > first_ && (values.empty() || values[number] < 0)) return at(grid - 1, number / 4);
-    return values[number];
+
+  std::size_t spent() const { return spent_; }
+  double brightest() const { return brightest_; }
+
+  /// Cells of the finest grid so far, of which a neighbour is much brighter or darker.
+  std::vector<std::uint32_t> edges(int grid) const {
+    std::vector<std::uint32_t> edges;
+    for (const std::uint32_t c : at(grid).looked_at)
+      if (differs(grid, c, [](int, std::uint32_t) { return true; })) edges.push_back(c);
+    return edges;
   }
-  /// Whether a neighbour of the cell is much brighter or darker; on the first grid also those at its corners.
-  bool is_edge(int grid, std::uint32_t number) const {
+
+  /// Looks at the quarters of these cells of `grid`; where one differs from a neighbour that was left whole, at the
+  /// quarters of that neighbour as well, and so on along the edge: its cells may all have looked alike by chance.
+  void divide(int grid, std::vector<std::uint32_t> chosen, std::size_t most) {
+    while (!chosen.empty()) {
+      std::vector<std::uint32_t> quarters;
+      for (const std::uint32_t c : chosen) {
+        at(grid).divided[c] = true;
+        for (std::uint32_t k = 0; k < 4; ++k) quarters.push_back(4 * c + k);
+      }
+      look_at(grid + 1, quarters);
+      chosen.clear();
+      if (spent_ > most) return;
+      for (const std::uint32_t q : quarters)
+        differs(grid + 1, q, [&](int neighbour_grid, std::uint32_t neighbour) {
+          if (neighbour_grid == grid) chosen.push_back(neighbour);
+          return false;
+        });
+      std::sort(chosen.begin(), chosen.end());
+      chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    }
+  }
+
+  AreaPlan plan() const {
+    AreaPlan plan;
+    for (int grid = first_; grid < AreaCells::kGrids; ++grid)
+      for (const std::uint32_t c : at(grid).looked_at) {
+        if (at(grid).divided[c]) continue;
+        plan.cells.push_back({static_cast<std::uint16_t>(grid), static_cast<std::uint16_t>(c)});
+        plan.mean += at(grid).value[c] * plan.cells.back().share();
+      }
+    return plan;
+  }
+
+ private:
+  struct Grid {
+    std::vector<std::uint32_t> looked_at;
+    std::vector<Spectrum> value;
+    std::vector<float> luminous;  ///< kNothing where it was not looked at
+    std::vector<bool> divided;
+  };
+  Grid& at(int grid) { return grids_[static_cast<std::size_t>(grid)]; }
+  const Grid& at(int grid) const { return grids_[static_cast<std::size_t>(grid)]; }
+
+  void look_at(int grid, const std::vector<std::uint32_t>& chosen) {
+    Grid& g = at(grid);
+    if (g.luminous.empty()) {
+      g.value.resize(AreaCells::count(grid));
+      g.luminous.assign(AreaCells::count(grid), kNothing);
+      g.divided.resize(AreaCells::count(grid));
+    }
+    points_.clear();
+    for (const std::uint32_t c : chosen) points_.push_back(cells_.pilots(grid)[c]);
+    values_.resize(points_.size());
+    look_(points_, values_);
+    spent_ += points_.size();
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      g.looked_at.push_back(chosen[k]);
+      g.value[chosen[k]] = values_[k];
+      g.luminous[chosen[k]] = static_cast<float>(luminous_mean(values_[k]));
+      brightest_ = std::max(brightest_, luminous_mean(values_[k]));
+    }
+  }
+
+  /// Calls found(grid, number) for neighbours of a cell that differ from it, finer ones apart, until one returns true.
+  template <class FoundOne>
+  bool differs(int grid, std::uint32_t number, const FoundOne& found) const {
     const int side = 4 << grid, i = static_cast<int>(gather(number >> 1)), j = static_cast<int>(gather(number));
-    float low = at(grid, number), high = low;
+    const float own = at(grid).luminous[number];
     for (int di = -1; di <= 1; ++di)
       for (int dj = -1; dj <= 1; ++dj) {
         if (i + di < 0 || i + di >= side || j + dj < 0 || j + dj >= side) continue;
         if (grid > first_ && di != 0 && dj != 0) continue;
-        const float near = at(grid, number_of(static_cast<std::uint32_t>(i + di), static_cast<std::uint32_t>(j + dj)));
-        low = std::min(low, near), high = std::max(high, near);
+        int at_grid = grid;
+        std::uint32_t near = number_of(static_cast<std::uint32_t>(i + di), static_cast<std::uint32_t>(j + dj));
+        while (at_grid > first_ && at(at_grid).luminous[near] == kNothing) --at_grid, near /= 4;
+        const float other = at(at_grid).luminous[near];
+        if (std::abs(own - other) > kGradual * std::max(own, other) && found(at_grid, near)) return true;
       }
-    return high - low > kGradual * high;
+    return false;
   }
 
- private:
+  const AreaCells& cells_;
+  const LookAtPoints& look_;
   int first_;
-  std::array<std::vector<float>, AreaCells::kGrids> values_;
+  std::array<Grid, AreaCells::kGrids> grids_;
+  std::size_t spent_ = 0;
+  double brightest_ = 0;
+  std::vector<std::array<float, 2>> points_;
+  std::vector<Spectrum> values_;
 };
 
 }  // namespace
 
-AreaCells::AreaCells(std::uint64_t seed) {
-  for (int grid = 0; grid < kGrids; ++grid) {
+AreaCells::AreaCells(int last, std::uint64_t seed) {
+  for (int grid = 0; grid <= last; ++grid) {
     points_[static_cast<std::size_t>(grid)] = net(grid, stream_key(seed, 0xc1));
     pilots_[static_cast<std::size_t>(grid)] = net(grid, stream_key(seed, 0xc2));
   }
@@ -106,48 +185,18 @@ std::optional<AreaPlan> even_view(const AreaCells& cells, int grid, const LookAt
 AreaPlan plan_area(const AreaCells& cells, const AreaBudget& budget, double others, const LookAtPoints& look) {
   if (budget.first > 1)
     if (auto plan = even_view(cells, budget.first - 1, look)) return *plan;
-  AreaPlan plan;
-  Found found(budget.first);
-  std::vector<std::uint32_t> here(AreaCells::count(budget.first)), edges;
-  for (std::uint32_t c = 0; c < here.size(); ++c) here[c] = c;
-  std::vector<std::array<float, 2>> points;
-  std::vector<Spectrum> values;
-  std::size_t spent = 0;
-  double brightest = 0;
-  for (int grid = budget.first; !here.empty(); ++grid) {
-    points.clear();
-    for (const std::uint32_t c : here) points.push_back(cells.pilots(grid)[c]);
-    values.resize(points.size());
-    look(points, values);
-    spent += points.size();
-    Spectrum mean = plan.mean;
-    for (std::size_t k = 0; k < here.size(); ++k) {
-      found.set(grid, here[k], static_cast<float>(luminous_mean(values[k])));
-      brightest = std::max(brightest, luminous_mean(values[k]));
-      mean += values[k] / AreaCells::count(grid);
-    }
-    edges.clear();
-    if (grid < budget.last)
-      for (const std::uint32_t c : here)
-        if (found.is_edge(grid, c)) edges.push_back(c);
+  Pilots pilots(cells, budget.first, look);
+  for (int grid = budget.first; grid < budget.last; ++grid) {
+    std::vector<std::uint32_t> edges = pilots.edges(grid);
     // Half of the cells that an edge passes lie beside it; each errs by half of its light, either way.
-    const double error = brightest * std::sqrt(static_cast<double>(edges.size()) / 8) / AreaCells::count(grid);
-    if (error < budget.tolerance * (luminous_mean(mean) + others)) edges.clear();
+    const double error = pilots.brightest() * std::sqrt(static_cast<double>(edges.size()) / 8) / AreaCells::count(grid);
+    const AreaPlan so_far = pilots.plan();
+    if (edges.empty() || error < budget.tolerance * (luminous_mean(so_far.mean) + others)) return so_far;
     // Each would send four pilots, and four rays that count in the end.
-    if (spent + plan.cells.size() + here.size() + 7 * edges.size() > budget.most_rays) edges.clear();
-    for (std::size_t k = 0, e = 0; k < here.size(); ++k) {
-      if (e < edges.size() && edges[e] == here[k]) {
-        ++e;
-        continue;
-      }
-      plan.cells.push_back({static_cast<std::uint16_t>(grid), static_cast<std::uint16_t>(here[k])});
-      plan.mean += values[k] * plan.cells.back().share();
-    }
-    here.clear();
-    for (const std::uint32_t c : edges)
-      for (std::uint32_t child = 0; child < 4; ++child) here.push_back(4 * c + child);
+    if (pilots.spent() + so_far.cells.size() + 7 * edges.size() > budget.most_rays) return so_far;
+    pilots.divide(grid, std::move(edges), budget.most_rays);
   }
-  return plan;
+  return pilots.plan();
 }
 
 }  // namespace clerestory

@@ -16,8 +16,9 @@ namespace clerestory {
 /// other. The points of a grid are one Owen-scrambled Sobol net, the same for all receivers.
 class AreaCells {
  public:
-  static constexpr int kGrids = 6;  ///< the last has 128 x 128 cells
-  explicit AreaCells(std::uint64_t seed);
+  static constexpr int kGrids = 7;  ///< the last has 256 x 256 cells
+  /// last  finest grid that is asked for.
+  AreaCells(int last, std::uint64_t seed);
 
   static constexpr std::uint32_t count(int grid) { return 16u << (2 * grid); }
   const std::vector<std::array<float, 2>>& points(int grid) const { return points_[static_cast<std::size_t>(grid)]; }
@@ -29,9 +30,9 @@ class AreaCells {
 
 /// How finely an area is looked at.
 struct AreaBudget {
-  int first = 2, last = 5;  ///< grids that it is looked at on, finer ones only along edges
+  int first = 2, last = 6;  ///< grids that it is looked at on, finer ones only along edges
   double tolerance = 0.003;      ///< no finer grid once the edges' error is below, of all light at the point [1]
-  std::size_t most_rays = 4096;  ///< about so many, pilots and what counts together: no finer grid than they allow
+  std::size_t most_rays = 8192;  ///< about so many, pilots and what counts together: no finer grid than they allow
 };
 
 struct AreaCell {
@@ -49,7 +50,7 @@ struct AreaPlan {
 /// Sets the values of points of the unit square, any number of them.
 using LookAtPoints = std::function<void(std::span<const std::array<float, 2>>, std::span<Spectrum>)>;
 
-/// Cells are divided where neighbours differ by more than a quarter of the brighter one: rays are spent along the edges
+/// Cells are divided where neighbours differ by more than a sixth of the brighter one: rays are spent along the edges
 /// of what hides an area, and few where the view is even or changes slowly.
 ///
 /// others  value which, all over the area, would give as much as all other light at the point does, roughly.

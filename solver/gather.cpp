@@ -23,9 +23,9 @@ GatherQuality sensor_quality(const SolveOptions& options) {
     case Accuracy::draft:
       return quality(options, {16, 256, 512}, {1, 3, 0.01, 512}, 64, 16);
     case Accuracy::standard:
-      return quality(options, {16, 256, 2048}, {2, 5, 0.003, 4096}, 256, 32);
+      return quality(options, {16, 256, 2048}, {2, 6, 0.003, 8192}, 256, 32);
     case Accuracy::fine:
-      return quality(options, {16, 1024, 8192}, {2, 5, 0.0015, 8192}, 512, 64);
+      return quality(options, {16, 1024, 8192}, {2, 6, 0.0015, 16384}, 512, 64);
   }
   return {};
 }

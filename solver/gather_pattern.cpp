@@ -43,7 +43,7 @@ Strata<Value>::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t 
 GatherPattern::GatherPattern(const GatherQuality& quality, std::uint64_t seed)
     : quality_(quality),
       bundle_(quality.bundle, stream_key(seed, 1), stream_key(seed, 2), local_direction),
-      area_cells_(seed),
+      area_cells_(quality.area.last, stream_key(seed, 5)),
       sun_key_(stream_key(seed, 4)) {
   const std::uint64_t lamp_key = stream_key(seed, 3);
   for (int k = 0; k < quality.lamp_rays; ++k) {

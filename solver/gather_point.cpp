@@ -326,12 +326,12 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
                        unsigned long long& rays) {
   const Frame frame(n);
   GatherPlan plan;
-  // Each alone: what it shares with others goes to one of them in the end.
-  const auto look_at = [&](const LightArea& area, std::uint32_t owner, const GatherPlan& alone,
-                           std::vector<std::uint32_t>& numbers, std::vector<AreaPlan>& plans) {
+  GatherPlan owners;  // so far: what an area shares with earlier ones is theirs
+  const auto look_at = [&](const LightArea& area, std::uint32_t owner, std::vector<std::uint32_t>& numbers,
+                           std::vector<AreaPlan>& plans) {
     const PolygonView polygon(p, n, area.triangles);
-    if (!(polygon.solid_angle() > 0)) return;
-    const View view(light, p, frame, 0, alone);
+    if (!(polygon.solid_angle() > 0)) return false;
+    const View view(light, p, frame, 0, owners);
     const double others = light.panels.ambient / std::max(1e-12, form_factor(area, p, n));
     AreaPlan found = plan_area(pattern.area_cells(), pattern.quality().area, others, [&](auto points, auto values) {
       std::array<PolygonView::Sight, 16> sights;
@@ -341,20 +341,19 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
       }
       rays += points.size();
     });
-    if (found.mean.is_black()) return;
+    if (found.mean.is_black()) return false;
     numbers.push_back(owner & ~kPanels);
     plans.push_back(std::move(found));
+    return true;
   };
   const std::vector<LightArea>& openings = light.problem.lights.openings;
   for (const std::uint32_t k : areas_over(openings, p, n, kMostOpenings, 0)) {
-    GatherPlan alone;
-    alone.openings = {k};
-    look_at(openings[k], k, alone, plan.openings, plan.opening_plans);
+    owners.openings.push_back(k);
+    if (!look_at(openings[k], k, plan.openings, plan.opening_plans)) owners.openings.pop_back();
   }
   for (const std::uint32_t k : areas_over(light.panels.shape, p, n, kMostPanels, kLeastOfBest)) {
-    GatherPlan alone;
-    alone.panels = {k};
-    look_at(light.panels.shape[k], kPanels + k, alone, plan.panels, plan.panel_plans);
+    owners.panels.push_back(k);
+    look_at(light.panels.shape[k], kPanels + k, plan.panels, plan.panel_plans);
   }
   double left = light.panels.all_flux;
   for (const std::uint32_t k : plan.panels) left -= light.panels.flux[k];

@@ -109,19 +109,14 @@ std::vector<std::vector<std::uint32_t>> plane_groups(const PatchSet& patches, co
 Panels find_panels(const PatchSet& patches, const LightSampler& lamps) {
   const Field& glow = lamps.glow();
   std::vector<std::uint32_t> bright, glowing;
-  double brightest = 0, dim_area = 0;
+  double brightest = 0;
   Panels panels;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i) {
     brightest = std::max(brightest, luminous_mean(glow[i]));
-    if (!lamps.is_explicit(PatchId{std::size_t{i}})) {
-      panels.ambient += patches.area[i] * luminous_mean(glow[i]);
-      dim_area += patches.area[i];
-      continue;
-    }
+    if (!lamps.is_explicit(PatchId{std::size_t{i}})) continue;
     bright.push_back(i);
     panels.all_flux += patches.area[i] * luminous_mean(glow[i]);
   }
-  if (dim_area > 0) panels.ambient /= dim_area;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i)
     if (luminous_mean(glow[i]) > kDark * brightest) glowing.push_back(i);
   std::vector<std::vector<std::uint32_t>> groups = plane_groups(patches, glowing);
@@ -147,6 +142,14 @@ Panels find_panels(const PatchSet& patches, const LightSampler& lamps) {
     panels.flux.push_back(of_explicit);
     panels.shape.push_back(std::move(shape));
   }
+  double dim_area = 0;
+  for (std::uint32_t i = 0; i < patches.patch_count(); ++i) {
+    const PatchId p{std::size_t{i}};
+    if (lamps.is_explicit(p) || panels.of(p) != Panels::kNone) continue;
+    panels.ambient += patches.area[i] * luminous_mean(glow[i]);
+    dim_area += patches.area[i];
+  }
+  if (dim_area > 0) panels.ambient /= dim_area;
   return panels;
 }
 

@@ -329,7 +329,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   GatherPlan owners;  // so far: what an area shares with earlier ones is theirs
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, std::vector<std::uint32_t>& numbers,
                            std::vector<AreaPlan>& plans) {
-    const PolygonView polygon(p, n, area.triangles);
+    const PolygonView polygon(p, n, area.triangles, area.corners);
     if (!(polygon.solid_angle() > 0)) return false;
     const View view(light, p, frame, 0, owners);
     const double others = light.panels.ambient / std::max(1e-12, form_factor(area, p, n));
@@ -376,7 +376,7 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNobody, bundle_sight(frame),
                       [](const Vec3&, double) { return 1.0; }, rays);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
-    const PolygonView polygon(p, n, area.triangles);
+    const PolygonView polygon(p, n, area.triangles, area.corners);
     if (!(polygon.solid_angle() > 0)) return;
     const Sum found = from_area({view, polygon, owner}, area_plan, pattern.area_cells(), area, p, n, rays);
     sum.E += found.E;

@@ -230,7 +230,7 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
     for (int k = 0; k < count; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 p = point_on_triangle(corners, u[0], u[1]) + n * problem.rays.lift();
-      const PolygonView polygon(p, n, openings[number].triangles);
+      const PolygonView polygon(p, n, openings[number].triangles, openings[number].corners);
       if (!(polygon.solid_angle() > 0)) continue;
       const auto [d, solid_angle] = polygon.look(u[2], u[3]);
       const Hit hit = problem.rays.first_hit(problem.patches, {p, d});

@@ -51,6 +51,7 @@ class Judge {
       if (front.share > back.share) {
         o.normal = -o.normal;
         for (auto& t : o.triangles) std::swap(t[1], t[2]);
+        std::reverse(o.corners.begin(), o.corners.end());
         std::swap(front, back);
       }
       if (!(back.share > kSeesSky) || !(front.share < kIndoors)) return 0;
@@ -86,6 +87,7 @@ LightArea opening_across(const Gap& gap) {
   o.area = length(area);
   if (!(o.area > 0)) return o;
   o.normal = area / o.area;
+  o.corners = gap.corners;
   o.triangles = triangulate(gap.corners);
   const BoundingSphere sphere = bounding_sphere(gap.corners);
   o.centre = sphere.centre, o.radius = sphere.radius;

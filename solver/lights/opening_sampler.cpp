@@ -30,7 +30,8 @@ OpeningSampler::OpeningSampler(const Problem& problem) : problem_(problem) {
 OpeningSampler::Sample OpeningSampler::sample(const Vec3& p, const Vec3& n, double pick, double u, double v) const {
   const LightTree::Choice choice = tree_.choose(p, n, pick);
   if (!(choice.probability > 0)) return {};
-  const PolygonView polygon(p, n, problem_.lights.openings[choice.light].triangles);
+  const LightArea& opening = problem_.lights.openings[choice.light];
+  const PolygonView polygon(p, n, opening.triangles, opening.corners);
   if (!(polygon.solid_angle() > 0)) return {};
   const auto [direction, per_share] = polygon.look(u, v);
   return {direction, per_share / choice.probability, choice.probability / polygon.solid_angle(),
@@ -46,7 +47,7 @@ double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d, s
   for (std::uint32_t k = 0; k < problem_.lights.openings.size(); ++k) {
     const LightArea& opening = problem_.lights.openings[k];
     if (k == but || way_out(opening, p, d) < 0) continue;
-    const double solid_angle = PolygonView(p, n, opening.triangles).solid_angle();
+    const double solid_angle = PolygonView(p, n, opening.triangles, opening.corners).solid_angle();
     if (solid_angle > 0) sum += tree_.probability(k, p, n) / solid_angle;
   }
   return sum;

@@ -66,6 +66,7 @@ LightArea area_of(const PatchSet& patches, const std::vector<std::uint32_t>& gro
   }
   const std::vector<Flat> hull = convex_hull(std::move(points));
   const auto lift = [&](const Flat& f) { return origin + frame.t * f.x + frame.b * f.y; };
+  for (const Flat& f : hull) panel.corners.push_back(lift(f));
   for (std::size_t k = 2; k < hull.size(); ++k) {
     panel.triangles.push_back({lift(hull[0]), lift(hull[k - 1]), lift(hull[k])});
     const auto& t = panel.triangles.back();

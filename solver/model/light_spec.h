@@ -72,7 +72,8 @@ struct Sun {
 /// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room, or
 /// bright patches that lie together. Only a hint where to look: what it misses is found as well.
 struct LightArea {
-  std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, counter-clockwise around the normal, local frame [m]
+  std::vector<Vec3> corners;                   ///< counter-clockwise around the normal, local frame [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, wound alike [m]
   Vec3 centre, normal;                         ///< normal: unit, to where the light goes
   double radius = 0, area = 0;                 ///< radius: farthest point from the centre [m], area [m2]
   double brightness = 0;                       ///< mean radiance that comes out of it [W/(m2 sr)]

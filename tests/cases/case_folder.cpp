@@ -1,6 +1,7 @@
 #include "tests/cases/case_folder.h"
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -73,7 +74,7 @@ std::vector<CaseScene> CaseFolder::scenes(const std::filesystem::path& reference
   const std::string pattern = read_text(path / "scene.json");
   const std::vector<CsvRow> points = csv_rows(path / "points.csv");
   const auto names = [&](const char* key, const CsvRow& row) {
-    return (row.at("config") + "; " + row.at("quantity")).find(said.at(key)) != std::string::npos;
+    return std::regex_search(row.at("config") + "; " + row.at("quantity"), std::regex(said.at(key)));
   };
   std::vector<CaseScene> out;
   for (CsvRow& row : csv_rows(reference / said.at("reference"))) {

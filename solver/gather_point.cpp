@@ -122,7 +122,7 @@ bool sees_edge_of_sky(const Illumination& light, const Vec3& p, const Frame& fra
     }
     if (sky && other) return true;
   }
-  return brightest > 3 * sum / (count / 4);  // around the sun, or in an image
+  return brightest > 1.5 * sum / (count / 4);  // around the sun, or in an image
 }
 
 std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {

@@ -183,7 +183,7 @@ std::optional<AreaPlan> even_view(const AreaCells& cells, int grid, const LookAt
 }  // namespace
 
 AreaPlan plan_area(const AreaCells& cells, const AreaBudget& budget, double others, const LookAtPoints& look) {
-  if (budget.first > 1)
+  if (budget.first > 0)
     if (auto plan = even_view(cells, budget.first - 1, look)) return *plan;
   Pilots pilots(cells, budget.first, look);
   for (int grid = budget.first; grid < budget.last; ++grid) {

@@ -97,9 +97,11 @@ bool sees_lamps(const Illumination& light, const Vec3& p, const Vec3& n, const G
   return false;
 }
 
-/// Whether a few rays find some sky that belongs to none of the openings, and something else as well or a bright spot.
-bool sees_edge_of_sky(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
-                   std::span<const std::uint32_t> openings, unsigned long long& rays) {
+/// What a few rays find of sky that belongs to none of the openings: part of the view may be sky, or end at a bright spot of
+/// it, and all of it may be.
+enum class SkyInView { none, edge, all };
+SkyInView sky_in_view(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
+                      std::span<const std::uint32_t> openings, unsigned long long& rays) {
   const int count = pattern.bundle().budget().strata();
   bool sky = false, other = false;
   double brightest = 0, sum = 0;
@@ -120,9 +122,10 @@ bool sees_edge_of_sky(const Illumination& light, const Vec3& p, const Frame& fra
       const double L = luminous_mean(light.sky(hits[k].direction(pilots[k])));
       brightest = std::max(brightest, L), sum += L;
     }
-    if (sky && other) return true;
+    if (sky && other) return SkyInView::edge;
   }
-  return brightest > 1.5 * sum / (count / 4);  // around the sun, or in an image
+  if (brightest > 1.5 * sum / (count / 4)) return SkyInView::edge;  // around the sun, or in an image
+  return sky ? SkyInView::all : SkyInView::none;
 }
 
 std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {
@@ -361,9 +364,14 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
                          (light.sky.dark() || sees_lamps(light, p, n, pattern, rays));
   const Strata<std::array<float, 3>>& bundle = pattern.bundle();
   const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
-  if (adapts && sees_edge_of_sky(light, p, frame, pattern, plan.openings, rays)) {
+  const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;
+  if (sky == SkyInView::edge) {
     const View view(light, p, frame, lamp_rays(light, pattern, plan), plan);
     plan.bundle = shares_by(pilot_values(view, bundle, kNobody, bundle_sight(frame), rays), bundle.budget(), true);
+  } else if (sky == SkyInView::all) {  // changes slowly all over: half of the surplus, evenly
+    const int rays_each = (bundle.budget().rays + bundle.budget().most_rays) / 2 / bundle.budget().strata();
+    plan.bundle.assign(static_cast<std::size_t>(bundle.budget().strata()),
+                       static_cast<std::uint8_t>(std::bit_width(static_cast<unsigned>(rays_each)) - 1));
   }
   return plan;
 }

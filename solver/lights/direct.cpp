@@ -208,7 +208,7 @@ Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {
       [&](const Vec3& p, double u, double v) { return p + direction_to_sun(sun, u, v) * far_away; });
 }
 
-constexpr std::size_t kMostOpenings = 6;  ///< over a patch
+constexpr std::size_t kMostOpenings = 4;  ///< over a patch
 
 /// Light of the sky through some openings, from points all over the patch. looked_at: those that a few rays found to
 /// show sky; light through the others is left to bundles.
@@ -221,7 +221,7 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
   const auto corners = problem.patches.corner_positions(PatchId{patch});
   std::vector<std::uint32_t> over = areas_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings, 0);
   for (const Vec3& corner : corners)  // all of a patch may see of it is from one corner
-    for (const std::uint32_t k : areas_over(openings, corner, n, 2, 0)) over.push_back(k);
+    for (const std::uint32_t k : areas_over(openings, corner, n, 1, 0)) over.push_back(k);
   std::sort(over.begin(), over.end());
   over.erase(std::unique(over.begin(), over.end()), over.end());
 

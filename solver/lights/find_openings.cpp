@@ -17,10 +17,10 @@ namespace {
 constexpr std::uint64_t kGapRays = 0x81;
 constexpr int kFewRays = 16, kRays = 128;      ///< to a side, to sift and to judge
 constexpr double kSeesSky = 0.1;               ///< share of the rays out that meet sky
-constexpr double kIndoors = 0.5;               ///< most of the rays in that do
+constexpr double kIndoors = 0.2;               ///< most of the rays in that do
 constexpr double kWideOpen = 0.5;              ///< and those that do so mostly are preferred
 constexpr double kNew = 0.1;                   ///< of the rays out, those that see sky which no other opening shows
-constexpr std::size_t kMostTriangles = 2'000'000, kMostOpenings = 1000;
+constexpr std::size_t kMostTriangles = 2'000'000, kMostOpenings = 500;
 
 struct SkySeen {
   double share = 0, radiance = 0;  ///< of the rays that escape through air or glass; mean of what they see

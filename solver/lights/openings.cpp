@@ -13,10 +13,12 @@ namespace clerestory {
 double way_out(const LightArea& opening, const Vec3& p, const Vec3& d) {
   const double towards = -dot(d, opening.normal);
   if (!(towards > 0)) return -1;
+  const Vec3 to_centre = opening.centre - p;
+  const double along = dot(to_centre, d);
+  if (dot(to_centre, to_centre) - along * along > opening.radius * opening.radius) return -1;  // passes by its sphere
   const double t = dot(p - opening.centre, opening.normal) / towards;
   if (!(t > 0)) return -1;
-  const Vec3 x = p + d * t, from_centre = x - opening.centre;
-  if (dot(from_centre, from_centre) > opening.radius * opening.radius * (1 + 1e-9)) return -1;
+  const Vec3 x = p + d * t;
   for (const auto& [a, b, c] : opening.triangles) {
     const double ab = dot(cross(b - a, x - a), opening.normal), bc = dot(cross(c - b, x - b), opening.normal),
                  ca = dot(cross(a - c, x - c), opening.normal);

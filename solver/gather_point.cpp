@@ -16,7 +16,6 @@ namespace clerestory {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kGradual = 0.25;  ///< neighbours that differ by less, as share of the brighter, need no more rays
 constexpr double kWorthLooking = 0.1;  ///< share of the bright patches' light in those that are not in panels looked at
 constexpr double kLeastOfBest = 0.2;  ///< of the light of the best panel, else it has no rays of its own
 constexpr std::size_t kMostOpenings = 8, kMostPanels = 4;  ///< that a point looks at by rays of their own
@@ -212,12 +211,12 @@ RayShares shares_by(const std::vector<Spectrum>& found, const RayBudget& budget,
           const double near = pilot[static_cast<std::size_t>(budget.stratum(i + di, (j + dj + g) % g))];
           low = std::min(low, near), high = std::max(high, near);
         }
-      difference[cell] = std::max(0.0, high - low - kGradual * high);
+      difference[cell] = high - low;
       sum_of_differences += difference[cell];
       sum += pilot[cell];
     }
   if (!(sum_of_differences > 0)) return {};
-  // All of the surplus is spent once neighbours differ by a quarter of the mean on average.
+  // An even view needs no surplus: all of it is spent once neighbours differ by a quarter of the mean on average.
   const double surplus = (budget.most_rays - budget.rays) * std::min(1.0, 4 * sum_of_differences / sum);
   const double least = std::ldexp(1, budget.least());
   RayShares shares(pilot.size());

@@ -90,12 +90,11 @@ void warn_about_scene(const Scene& scene, Console& console) {
     console.warn(scene.file + ": materials '" + name + "' " + why_unused(name, scene));
 }
 
-void warn_about_places(const Problem& problem, const Scene& scene, std::span<const SensorPoint> sensors,
-                       Console& console) {
+void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Console& console) {
   for_each_lamp(problem.lights, [&](const auto& lamp, std::size_t) {
     warn_about_luminaire(problem, lamp.name, lamp.position, console);
   });
-  const auto buried = buried_points(problem, sensors);
+  const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
   if (!buried.empty())
     console.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +
                  ") inside a solid or on a surface; what arrives there means little.");

@@ -1,11 +1,10 @@
 #pragma once
 // What a person would notice at a look and a solver would not.
 
-#include <span>
-
 #include "apps/console.h"
 #include "solver/model/scene.h"
 #include "solver/problem.h"
+#include "solver/sensor_planes.h"
 
 namespace clerestory {
 
@@ -22,7 +21,6 @@ std::vector<SensorPoint> all_sensor_points(const Scene& scene);
 void warn_about_scene(const Scene& scene, Console& console);
 
 /// Luminaires outside every room and sensors inside walls.
-void warn_about_places(const Problem& problem, const Scene& scene, std::span<const SensorPoint> sensors,
-                       Console& console);
+void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Console& console);
 
 }  // namespace clerestory

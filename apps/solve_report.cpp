@@ -1,11 +1,17 @@
 #include "apps/solve_report.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <tuple>
 
 #include "apps/wording.h"
+#include "io/text.h"
 #include "solver/form_factors/form_factor_matrix.h"
+#include "solver/lights/point_lights.h"
 #include "solver/memory_estimate.h"
 #include "solver/model/units.h"
+#include "solver/sensor_summary.h"
 
 namespace clerestory {
 namespace {
@@ -39,6 +45,20 @@ std::string error_line(const MeasuredError& e) {
          percent(e.p95_relative) + where;
 }
 
+/// Characters of UTF-8.
+std::size_t width(const std::string& s) {
+  return static_cast<std::size_t>(std::ranges::count_if(s, [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+std::string remarks(const SensorSummary& s) {
+  std::string text;
+  if (s.threshold) text += percent(s.threshold->share) + " at " + rounded(s.threshold->lux) + " lx or more";
+  if (const auto& d = s.daylight_factor)
+    text += (text.empty() ? "" : "; ") + ("daylight factor " + rounded(d->mean)) + " % (median " + rounded(d->median) +
+            " %), " + percent(d->share) + " at 2 % or more";
+  return text;
+}
+
 std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
   const std::size_t sides = 2 * c.triangles - c.dark_sides;
   const bool has_matrix = s.solution.method == "gauss-seidel" || s.solution.method == "jacobi";
@@ -47,6 +67,60 @@ std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
 }
 
 }  // namespace
+
+std::optional<double> daylight_reference(const Lights& lights) {
+  if (!lights.sky || !lights.suns.empty()) return {};
+  const double reference = photometric(lights.sky->horizontal_irradiance);
+  return reference > 0 ? std::optional(reference) : std::nullopt;
+}
+
+std::vector<RunReport::Luminaires> luminaires_by_file(const Lights& lights) {
+  std::vector<RunReport::Luminaires> rows;
+  std::map<std::tuple<std::string, const PhotometricWeb*, std::string>, std::size_t> row_of;
+  const auto add = [&](const char* type, const PhotometricWeb* web, const std::string& group, const Spectrum& power) {
+    const auto [at, is_new] = row_of.try_emplace({type, web, group}, rows.size());
+    if (is_new) {
+      rows.emplace_back();
+      rows.back().type = type;
+      rows.back().group = group;
+      if (web) {
+        rows.back().file = web->name;
+        rows.back().file_flux = web->flux;
+        rows.back().declared_flux = web->declared_flux;
+        rows.back().lamp_flux = web->lamp_flux;
+      }
+    }
+    ++rows[at->second].count;
+    rows[at->second].luminous_flux += photometric(power);
+  };
+  for (const auto& lamp : lights.points) add("point", nullptr, lamp.group, power(lamp));
+  for (const auto& lamp : lights.spots) add("spot", nullptr, {}, power(lamp));
+  for (const auto& lamp : lights.webs) add("file", lamp.web.get(), lamp.group, power(lamp));
+  return rows;
+}
+
+std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors) {
+  using Row = std::array<std::string, 7>;
+  std::vector<Row> rows = {{"lux at sensors", "points", "mean", "min", "max", "median", "U0"}};
+  for (const SensorSummary& s : sensors) {
+    const bool is_plain = s.kind == SensorKind::planar;
+    const auto kind = std::string(kSensorKindNames[static_cast<std::size_t>(s.kind)]);
+    rows.push_back({"  " + quotable(s.name, 40) + (is_plain ? "" : " (" + kind + ")"), grouped(s.points),
+                    rounded(s.mean), rounded(s.min), rounded(s.max), rounded(s.median), rounded(s.uniformity, 2)});
+  }
+  std::array<std::size_t, 7> widest{};
+  for (const Row& row : rows)
+    for (std::size_t k = 0; k < row.size(); ++k) widest[k] = std::max(widest[k], width(row[k]));
+  std::vector<std::string> lines;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::string line = rows[r][0] + std::string(widest[0] - width(rows[r][0]), ' ');
+    for (std::size_t k = 1; k < rows[r].size(); ++k)
+      line += std::string(2 + widest[k] - width(rows[r][k]), ' ') + rows[r][k];
+    const std::string note = r > 0 ? remarks(sensors[r - 1]) : "";
+    lines.push_back(note.empty() ? line : line + "  " + note);
+  }
+  return lines;
+}
 
 void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.method = s.solution.method;
@@ -67,6 +141,9 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.repairs = s.repairs;
   r.error = figures_of(s.error);
   r.error_sensors = figures_of(s.error_sensors);
+  r.daylight = scene.daylight;
+  r.luminaires = luminaires_by_file(scene.lights);
+  r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));
   r.left_out = what_was_left_out(scene, s);
 }
 
@@ -95,6 +172,8 @@ void say_summary(const RunReport& r, const Solved& s, Console& console) {
               " W, escaped " + rounded(r.energy.escaped, 4) + " W, imbalance " + percent(r.energy.imbalance()));
   console.say("  error   " + (s.error ? error_line(*s.error) : std::string("not measured")));
   if (s.error_sensors) console.say("  sensors " + error_line(*s.error_sensors));
+  if (!r.sensors.empty())
+    for (const std::string& line : sensor_table(r.sensors)) console.say("  " + line);
   console.say("  time    " + duration(t.total) + " (read " + duration(t.read) + ", mesh " + duration(t.mesh) +
               ", solve " + duration(t.build + t.direct + t.refine + t.gather) + ", show " + duration(t.reconstruct) +
               ", measure " + duration(t.measure) + "), memory " + bytes(r.peak_memory_bytes));

@@ -27,11 +27,20 @@ struct Solved {
 
 void fill_report(RunReport& report, const Scene& scene, const Solved& solved);
 
+/// Illuminance on open ground [lx], when daylight factors have a meaning: a sky and no sun.
+std::optional<double> daylight_reference(const Lights& lights);
+
+/// Luminaires by type, photometric file and group, in the order in which they first appear.
+std::vector<RunReport::Luminaires> luminaires_by_file(const Lights& lights);
+
+/// A table of the sets, one line each below its header; [lx].
+std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors);
+
 /// Takes what the solver's stages took out of `gather`, which holds the whole solve, and gives it to direct, refine and
 /// reconstruct: what is left was iterating.
 void split_by_stage(RunReport::Seconds& seconds, const Console& console);
 
-/// Elements, time, energy balance and measured error, as lines on standard output.
+/// Elements, time, energy balance, measured error and the sensors of each set, as lines on standard output.
 void say_summary(const RunReport& report, const Solved& solved, Console& console);
 
 }  // namespace clerestory

@@ -1,6 +1,7 @@
 #include "io/run_report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -43,6 +44,64 @@ void add_error_figures(std::vector<Figure>& out, const std::string& group,
   out.push_back({group + ".p95_relative", error->p95_relative});
   out.push_back({group + ".samples", count(error->samples)});
   out.push_back({group + ".confidence", error->confidence});
+}
+
+std::string two_digits(int n) { return (n < 10 ? "0" : "") + std::to_string(n); }
+
+void add_daylight_figures(std::vector<Figure>& out, const Daylight& d) {
+  if (d.weather) {
+    out.push_back({"daylight.weather", d.weather->file});
+    out.push_back({"daylight.date", two_digits(d.weather->month) + "-" + two_digits(d.weather->day)});
+    out.push_back({"daylight.hour", static_cast<long long>(d.weather->hour)});
+  }
+  if (d.time) {
+    const int minutes = static_cast<int>(std::lround(d.time->hour * 60));
+    out.push_back({"daylight.sun_time", two_digits(minutes / 60) + ":" + two_digits(minutes % 60)});
+  }
+  out.push_back({"daylight.sun_elevation", d.sun.elevation_deg});
+  out.push_back({"daylight.sun_azimuth", d.sun.azimuth_deg});
+}
+
+Json json_of(const RunReport::Luminaires& l) {
+  Json json = {{"type", l.type}};
+  if (!l.file.empty()) json["file"] = l.file;
+  if (!l.group.empty()) json["group"] = l.group;
+  json["count"] = l.count;
+  json["luminous_flux"] = l.luminous_flux;
+  if (l.type != "file") return json;
+  json["file_flux"] = l.file_flux;
+  if (l.declared_flux > 0) {
+    json["declared_flux"] = l.declared_flux;
+    json["flux_balance"] = l.file_flux / l.declared_flux;
+  }
+  if (l.lamp_flux > 0) {
+    json["lamp_flux"] = l.lamp_flux;
+    json["light_output_ratio"] = l.file_flux / l.lamp_flux;
+  }
+  return json;
+}
+
+Json json_of(const SensorSummary& s) {
+  Json json = {{"name", s.name},     {"kind", kSensorKindNames[static_cast<std::size_t>(s.kind)]},
+               {"points", s.points}, {"mean", s.mean},
+               {"min", s.min},       {"max", s.max},
+               {"median", s.median}, {"uniformity", s.uniformity}};
+  if (s.threshold) {
+    json["threshold"] = s.threshold->lux;
+    json["share_above_threshold"] = s.threshold->share;
+  }
+  if (s.daylight_factor)
+    json["daylight_factor"] = {{"mean", s.daylight_factor->mean},
+                               {"median", s.daylight_factor->median},
+                               {"share_above_2", s.daylight_factor->share}};
+  return json;
+}
+
+template <class Row>
+Json array_of(const std::vector<Row>& rows) {
+  Json json = Json::array();
+  for (const Row& row : rows) json.push_back(json_of(row));
+  return json;
 }
 
 std::vector<Figure> run_figures(const RunReport& r) {
@@ -118,6 +177,7 @@ std::vector<Figure> repeatable_figures(const RunReport& r) {
                          {"energy.imbalance", r.energy.imbalance()}});
   add_error_figures(out, "error", r.error);
   add_error_figures(out, "error_sensors", r.error_sensors);
+  if (r.daylight) add_daylight_figures(out, *r.daylight);
   add_mesh_figures(out, r.repairs);
   return out;
 }
@@ -127,6 +187,8 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   for (const Figure& figure : repeatable_figures(report)) set(json, figure);
   for (const Figure& figure : run_figures(report)) set(json, figure);
   if (!report.error) json["error"] = nullptr;  // asked for by readers even when there was no time to measure
+  if (!report.luminaires.empty()) json["luminaires"] = array_of(report.luminaires);
+  if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
   json["log"] = report.log;
   json["warnings"] = report.warnings;
   json["left_out"] = report.left_out;

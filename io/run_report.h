@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/model/mesh_report.h"
+#include "solver/model/scene.h"
 #include "solver/model/solution.h"
 
 namespace clerestory {
@@ -44,6 +45,19 @@ struct RunReport {
     double confidence = 0;  ///< half-width of the 95 % interval of rms_relative
   };
   std::optional<ErrorFigures> error, error_sensors;  ///< empty when not measured
+  std::optional<Daylight> daylight;
+  /// Luminaires of one photometric file (or all points, or all spots) in one group.
+  struct Luminaires {
+    std::string type;         ///< "file", "point" or "spot"
+    std::string file, group;  ///< may be empty
+    std::size_t count = 0;
+    double luminous_flux = 0;  ///< of all of them, dimming included [lm]
+    double file_flux = 0;      ///< of one, the integral of its file's intensities [lm]
+    double declared_flux = 0;  ///< of one, as its file says [lm]; 0: it does not
+    double lamp_flux = 0;      ///< of one's bare lamps, as its file says [lm]; 0: it does not
+  };
+  std::vector<Luminaires> luminaires;
+  std::vector<SensorSummary> sensors;  ///< one a set
   StopReason stop = StopReason::converged;
   MeshReport repairs;
   std::vector<std::string> log;  ///< a line for each round of the solver; the last ones tell what a stopped run shows

@@ -104,11 +104,11 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   const Lights lights = local_lights(scene.lights, patches, rays);
   const Problem problem{patches, rays, lights};
   if (has_light(scene)) make_patches(patches, find_lit_sides(problem, settings.solve.seed).wanted);
-  const std::vector<SensorPoint> sensors = all_sensor_points(scene);
+  const SensorPlanes sensors = planes_of(scene.sensors);
   warn_about_places(problem, scene, sensors, console);
 
   console.say(arguments.input + ": " + counted(scene.surfaces.size(), "object") + ", " +
-              counted(scene.materials.size(), "material") + ", " + counted(sensors.size(), "sensor") + ", " +
+              counted(scene.materials.size(), "material") + ", " + counted(sensors.sensor_count(), "sensor") + ", " +
               (scene.channels() == 1 ? "grey" : "in colour"));
   say_mesh(repairs, console);
   say_materials(scene, console);
@@ -118,7 +118,7 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   report.threads = arguments.common.threads;
   report.repairs = repairs;
   report.counts.triangles = patches.triangle_count();
-  report.counts.sensors = sensors.size();
+  report.counts.sensors = sensors.sensor_count();
   report.seconds.total = console.elapsed();
   report.peak_memory_bytes = peak_memory_bytes();
   report.warnings = console.warnings();

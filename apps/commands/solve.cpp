@@ -58,13 +58,13 @@ std::optional<MeasuredError> if_measured(const MeasuredError& error) {
   return error.samples > 0 ? std::optional(error) : std::nullopt;
 }
 
-/// Every sensor gets its row, however little time there is: a rough one when the good ones take too long.
-PointIrradiance gather_all_sensors(const Problem& problem, const Solution& solution,
-                                   std::span<const SensorPoint> sensors, SolveOptions options, const Monitor& monitor) {
-  PointIrradiance at_sensors = gather_at_sensors(problem, solution, sensors, options, monitor);
-  if (at_sensors.complete) return at_sensors;
+/// Every plane of a sensor gets its value, however little time there is: a rough one when the good ones take too long.
+PointIrradiance gather_all_planes(const Problem& problem, const Solution& solution, std::span<const SensorPoint> planes,
+                                  SolveOptions options, const Monitor& monitor) {
+  PointIrradiance at_planes = gather_at_sensors(problem, solution, planes, options, monitor);
+  if (at_planes.complete) return at_planes;
   options.accuracy = Accuracy::draft;
-  return gather_at_sensors(problem, solution, sensors, options, {.progress = monitor.progress});
+  return gather_at_sensors(problem, solution, planes, options, {.progress = monitor.progress});
 }
 
 /// Memory that a limit leaves for the solve, when the model has been read.
@@ -140,7 +140,7 @@ std::optional<Prepared> prepare_to_fit(const Scene& scene, Settings& settings, s
 
 /// The data flow of the README: surfaces -> patches -> solution -> field on vertices and at sensors -> its error.
 /// Nothing when Ctrl-C came before there were patches to solve.
-std::optional<Solved> solve_scene(const Scene& scene, Settings settings, std::span<const SensorPoint> sensors,
+std::optional<Solved> solve_scene(const Scene& scene, Settings settings, const SensorPlanes& sensors,
                                   RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
   std::optional<RayScene> rays;
   std::optional<Prepared> prepared = prepare_to_fit(scene, settings, rays, seconds, console, monitor);
@@ -166,21 +166,28 @@ std::optional<Solved> solve_scene(const Scene& scene, Settings settings, std::sp
   }
   lap.add_to(seconds.gather);
 
-  PointIrradiance at_sensors = gather_all_sensors(problem, solution, sensors, settings.solve, monitor);
-  solution.rays += at_sensors.rays;
+  const PointIrradiance at_planes = gather_all_planes(problem, solution, sensors.planes, settings.solve, monitor);
+  solution.rays += at_planes.rays;
   if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
   lap.add_to(seconds.reconstruct);
 
   std::optional<MeasuredError> error, error_sensors;
   if (!monitor.should_stop())
     error = if_measured(measure_error(problem, lightmap, settings.solve, solution.rays, monitor));
-  if (!monitor.should_stop() && !sensors.empty())
+  if (!monitor.should_stop() && !sensors.planes.empty())
     error_sensors =
-        if_measured(measure_sensor_error(problem, sensors, at_sensors.E, settings.solve, solution.rays, monitor));
+        if_measured(measure_sensor_error(problem, sensors.planes, at_planes.E, settings.solve, solution.rays, monitor));
   if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
   lap.add_to(seconds.measure);
-  return Solved{std::move(patches),      repairs, std::move(lit_sides), std::move(solution), std::move(lightmap),
-                std::move(at_sensors.E), error,   error_sensors,        std::move(debug)};
+  return Solved{std::move(patches),
+                repairs,
+                std::move(lit_sides),
+                std::move(solution),
+                std::move(lightmap),
+                mean_over_planes(sensors, at_planes.E),
+                error,
+                error_sensors,
+                std::move(debug)};
 }
 
 /// Met for sure: the measured error and what is uncertain about it.
@@ -189,7 +196,7 @@ bool meets(const Solved& solved, double target) {
 }
 
 /// Solves once, or as often as the target error asks for; settings end as they were for the result returned, the best.
-std::optional<Solved> solve_to_target(const Scene& scene, Settings& settings, std::span<const SensorPoint> sensors,
+std::optional<Solved> solve_to_target(const Scene& scene, Settings& settings, const SensorPlanes& sensors,
                                       RunReport::Seconds& seconds, Console& console, const Monitor& monitor) {
   constexpr int kRounds = 5;  // the last has 16 times the elements of the first
   std::optional<Solved> best = solve_scene(scene, settings, sensors, seconds, console, monitor);
@@ -216,13 +223,6 @@ std::optional<Solved> solve_to_target(const Scene& scene, Settings& settings, st
   }
   if (monitor.should_stop() && !meets(*best, target)) best->solution.stop = why_stopped(monitor);
   return best;
-}
-
-/// Illuminance on open ground [lx], when daylight factors have a meaning: a sky and no sun.
-std::optional<double> daylight_reference(const Lights& lights) {
-  if (!lights.sky || !lights.suns.empty()) return {};
-  const double reference = photometric(lights.sky->horizontal_irradiance);
-  return reference > 0 ? std::optional(reference) : std::nullopt;
 }
 
 ExitCode exit_code(const Solved& solved, const Settings& settings) {
@@ -267,10 +267,11 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   }
   warn_about_scene(scene, console);
   require_light(scene);
-  const std::vector<SensorPoint> sensors = all_sensor_points(scene);
+  const SensorPlanes sensors = planes_of(scene.sensors);
   const std::filesystem::path sensors_file = sensors_output(arguments);
-  if (!sensors.empty()) check_writable(sensors_file);
-  if (sensors.empty() && !arguments.sensors_output.empty())
+  const bool has_sensors = sensors.sensor_count() > 0;
+  if (has_sensors) check_writable(sensors_file);
+  if (!has_sensors && !arguments.sensors_output.empty())
     throw InputError("--sensors-out " + arguments.sensors_output +
                      ": there are no sensors to write; give --sensors POINTS.csv, or \"sensors\" in the scene file.");
   lap.add_to(report.seconds.read);
@@ -295,7 +296,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   fill_report(report, scene, solved);
   write_result(arguments.output, solved.patches, solved.lightmap, solved.solution, daylight_reference(scene.lights),
                report);
-  if (!sensors.empty()) write_sensors(sensors_file, sensors, solved.sensor_E);
+  if (has_sensors) write_sensors(sensors_file, all_sensor_points(scene), solved.sensor_E);
   if (settings.debug) write_debug(arguments.solve.debug_output, solved.debug, solved.patches.origin);
   writing.add_to(report.seconds.write);
 
@@ -306,7 +307,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   report.warnings = console.warnings();
   if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
   say_summary(report, solved, console);
-  console.say("  results " + arguments.output + (sensors.empty() ? "" : ", " + sensors_file.string()) +
+  console.say("  results " + arguments.output + (has_sensors ? ", " + sensors_file.string() : "") +
               (arguments.common.report.empty() ? "" : ", " + arguments.common.report));
   return code;
 }

@@ -6,6 +6,7 @@
 #include "io/input_file.h"
 #include "io/read_sensors.h"
 #include "io/text.h"
+#include "io/unit_vector.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -14,24 +15,50 @@ namespace {
 /// Steps of `spacing` that fit into `length`; a length that is a whole multiple in decimal counts as one.
 double steps(double length, double spacing) { return std::floor(length / spacing * (1 + 1e-9) + 1e-9); }
 
-SensorSet read_grid(const JsonObject& object, std::size_t room_left) {
+constexpr Vec3 kUp{0, 0, 1};
+
+void refuse_beside(const JsonObject& object, std::initializer_list<std::string_view> keys, std::string_view other) {
+  for (const std::string_view key : keys)
+    if (object.has(key)) throw InputError(text(object.place(key), " does not go with ", other));
+}
+
+SensorKind read_kind(const JsonObject& object) {
+  const auto name = object.choice("kind", kSensorKindNames);
+  if (!name) return SensorKind::planar;
+  return SensorKind(std::ranges::find(kSensorKindNames, *name) - std::begin(kSensorKindNames));
+}
+
+/// Normal of a grid's points; of a cylinder the axis.
+Vec3 grid_normal(const JsonObject& object, SensorKind kind, const Vec3& u, const Vec3& v) {
+  if (kind == SensorKind::horizontal)
+    refuse_beside(object, {"normal"}, "\"kind\": \"horizontal\", which faces up; leave it out");
+  if (kind == SensorKind::camera)
+    refuse_beside(object, {"normal"}, "\"kind\": \"camera\", which faces the camera; leave it out");
+  if (const auto normal = object.unit_vector("normal")) return *normal;
+  if (kind == SensorKind::planar || kind == SensorKind::vertical) {
+    const Vec3 across = normalized(cross(normalized(u), normalized(v)));
+    if (length(across) > 0) return across;
+    throw InputError(text(object.place("normal"), " is missing, and u and v span no plane to take it from"));
+  }
+  return kUp;  // the others have their own
+}
+
+std::string limit(SensorKind kind) {
+  return text("at most ", kMaxSensors, " in one scene",
+              kind == SensorKind::cylindrical ? text(", and each cylindrical one counts as ", kCylinderPlanes) : "");
+}
+
+SensorSet read_grid(const JsonObject& object, SensorKind kind, std::size_t room_left) {
   for (const std::string_view key : {"origin", "u", "v", "spacing"}) object.at(key);
   const Vec3 origin = *object.vector("origin", kCoordinate), u = *object.vector("u", kCoordinate),
              v = *object.vector("v", kCoordinate);
   const double spacing =
       *object.number("spacing", {.low = 0, .high = 1e12, .low_allowed = false, .advice = "it is in metres"});
-  Vec3 normal;
-  if (object.has("normal")) {
-    normal = *object.unit_vector("normal");
-  } else {
-    normal = normalized(cross(normalized(u), normalized(v)));
-    if (length(normal) == 0)
-      throw InputError(text(object.place("normal"), " is missing, and u and v span no plane to take it from"));
-  }
+  const Vec3 normal = grid_normal(object, kind, u, v);
   const double along_u = steps(length(u), spacing) + 1, along_v = steps(length(v), spacing) + 1;
   if (!(along_u * along_v <= static_cast<double>(room_left))) {
-    throw InputError(text(object.place("spacing"), " = ", spacing, " makes ", along_u, " x ", along_v,
-                          " points; at most ", kMaxSensors, " in one scene"));
+    throw InputError(
+        text(object.place("spacing"), " = ", spacing, " makes ", along_u, " x ", along_v, " points; ", limit(kind)));
   }
   SensorSet sensors;
   const Vec3 step_u = normalized(u) * spacing, step_v = normalized(v) * spacing;
@@ -48,6 +75,40 @@ SensorSet read_grid(const JsonObject& object, std::size_t room_left) {
   return sensors;
 }
 
+std::string place_of(const SensorSet& set, std::size_t i) {
+  const Vec3& p = set.points[i].position;
+  return text("point ", i + 1, " at (", p.x, ", ", p.y, ", ", p.z, ")");
+}
+
+/// Normals as the kind wants them, whatever a file says.
+void orient(const JsonObject& object, SensorSet& set) {
+  if (set.kind == SensorKind::horizontal)
+    for (SensorPoint& point : set.points) point.normal = kUp;
+  if (set.kind == SensorKind::vertical) {
+    for (std::size_t i = 0; i < set.points.size(); ++i) {
+      const Vec3& n = set.points[i].normal;
+      if (std::abs(n.z) <= 1e-6) continue;
+      throw InputError(text(object.where(), ": ", place_of(set, i), " has the normal (", n.x, ", ", n.y, ", ", n.z,
+                            "); \"kind\": \"vertical\" needs a horizontal one, [0, -1, 0] for who looks to -y"));
+    }
+  }
+  if (set.kind == SensorKind::camera) {
+    object.at("camera");
+    const Vec3 camera = *object.vector("camera", kCoordinate);
+    for (std::size_t i = 0; i < set.points.size(); ++i) {
+      const Vec3 to_camera = camera - set.points[i].position;
+      if (!(length(to_camera) > 1e-6))  // what rounding leaves of a grid point has a direction, and no meaning
+        throw InputError(text(object.place("camera"), " is where ", place_of(set, i),
+                              " is, and a point cannot face itself; move one of them"));
+      set.points[i].normal = unit_vector(to_camera);
+    }
+  } else {
+    refuse_beside(
+        object, {"camera"},
+        text("\"kind\": \"", kSensorKindNames[static_cast<std::size_t>(set.kind)], "\"; write \"kind\": \"camera\""));
+  }
+}
+
 }  // namespace
 
 std::vector<SensorSet> read_sensor_entries(const Json& sensors, const std::string& file_name,
@@ -56,22 +117,27 @@ std::vector<SensorSet> read_sensor_entries(const Json& sensors, const std::strin
   std::size_t total = 0;
   for (const Json& entry : as_array(sensors, file_name + ": sensors", "sensor sets")) {
     const JsonObject object(entry, text(file_name, ": sensors[", sets.size(), "]"),
-                            {"name", "file", "origin", "u", "v", "spacing", "normal"});
+                            {"name", "file", "origin", "u", "v", "spacing", "normal", "kind", "camera", "threshold"});
+    const SensorKind kind = read_kind(object);
+    const std::size_t weight = planes_a_sensor(kind);
+    const auto threshold =
+        object.number("threshold", {.low = 0, .high = kMostLight, .low_allowed = false, .advice = "it is in lux"});
     if (object.has("file")) {
-      for (const std::string_view key : {"origin", "u", "v", "spacing", "normal"}) {
-        if (object.has(key)) throw InputError(text(object.place(key), " does not go with \"file\"; keep one of them"));
-      }
+      refuse_beside(object, {"origin", "u", "v", "spacing", "normal"}, "\"file\"; keep one of them");
       const std::string file = *object.word("file");
       require_file(folder / file, object.place("file"), file);
       sets.push_back(read_sensors(folder / file));
     } else {
-      sets.push_back(read_grid(object, kMaxSensors - total));
+      sets.push_back(read_grid(object, kind, (kMaxSensors - total) / weight));
     }
-    if (const auto name = object.word("name")) sets.back().name = *name;
-    if (sets.back().name.empty()) sets.back().name = text("sensors ", sets.size());
-    total += sets.back().points.size();
-    if (total > kMaxSensors)
-      throw InputError(text(object.where(), ": more than ", kMaxSensors, " points in one scene"));
+    SensorSet& set = sets.back();
+    set.kind = kind;
+    set.threshold = threshold;
+    if (const auto name = object.word("name")) set.name = *name;
+    if (set.name.empty()) set.name = text("sensors ", sets.size());
+    orient(object, set);
+    total += set.points.size() * weight;
+    if (total > kMaxSensors) throw InputError(text(object.where(), ": too many points; ", limit(kind)));
   }
   return sets;
 }

@@ -68,6 +68,7 @@ struct HourOfDaylight {
   std::optional<double> direct_normal_lux, diffuse_horizontal_lux;  ///< measured [lx]
   double precipitable_water = 2;                                    ///< [cm]
   std::optional<int> line;                                          ///< of the weather file
+  std::optional<Daylight::Hour> weather;                            ///< which hour of which file
 };
 
 SkyEntries read_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels) {
@@ -221,6 +222,7 @@ HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, co
   else
     light.precipitable_water = found.precipitable_water_cm.value_or(light.precipitable_water);
   light.line = found.line;
+  light.weather = Daylight::Hour{weather.file, moment.month, moment.day, hour};
   return light;
 }
 
@@ -341,8 +343,9 @@ void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& 
 
 }  // namespace
 
-void read_sky_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                      ChannelCount& channels, Lights& lights, std::vector<std::string>& warnings) {
+std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::string& file_name,
+                                         const std::filesystem::path& folder, ChannelCount& channels, Lights& lights,
+                                         std::vector<std::string>& warnings) {
   SkyEntries entries = read_entries(root, file_name, channels);
   PlaceAndTime& at = entries.where_and_when;
   const std::optional<JsonObject>& object = entries.sky;
@@ -411,6 +414,9 @@ void read_sky_entries(const JsonObject& root, const std::string& file_name, cons
   if ((at.time || root.has("location")) && !hour && !(sun_used && computed) && !(sky.image && at.north_deg != 0)) {
     warnings.push_back(file_name + ": location and time are not used: sky and sun are given as they are");
   }
+  if (!sun_used && !hour) return std::nullopt;
+  return Daylight{compass_direction(*to_sun, at.north_deg), computed ? at.time : std::nullopt,
+                  hour ? hour->weather : std::nullopt};
 }
 
 Sky sky_of_option(std::string_view option) {

@@ -2,20 +2,23 @@
 // The "sky", "sun", "location" and "time" of a scene file.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/scene_file/json_object.h"
 #include "io/scene_file/material_rules.h"
-#include "solver/model/light_spec.h"
+#include "solver/model/scene.h"
 
 namespace clerestory {
 
 /// Reads all of them from the scene's root object into `lights`. Weather and image files are relative to `folder`.
 ///
+/// returns the sun and the hour that they go by, when they go by a sun.
 /// throws  InputError; also for a sky that needs the sun in a scene that does not say where it stands.
-void read_sky_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                      ChannelCount& channels, Lights& lights, std::vector<std::string>& warnings);
+std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::string& file_name,
+                                         const std::filesystem::path& folder, ChannelCount& channels, Lights& lights,
+                                         std::vector<std::string>& warnings);
 
 /// The sky of --sky NAME[:LUX]; 10,000 lx unless it says otherwise. Skies that need no sun: uniform, cie-overcast, and
 /// cie-general-TYPE for types 1, 3, 5 and 16.

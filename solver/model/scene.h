@@ -11,6 +11,7 @@
 #include "solver/model/light_spec.h"
 #include "solver/model/material.h"
 #include "solver/model/sensors.h"
+#include "solver/model/solar_position.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
@@ -45,12 +46,24 @@ struct SolverSettings {
   std::optional<std::uint64_t> seed;
 };
 
+/// What sun and sky go by, for people; the solver looks at the lights only.
+struct Daylight {
+  Horizontal sun;              ///< where it stands, up or set
+  std::optional<Moment> time;  ///< for which it was computed; empty: the scene gives its direction
+  struct Hour {
+    std::string file;
+    int month = 0, day = 0, hour = 0;  ///< hour 12 ends at 12:00
+  };
+  std::optional<Hour> weather;  ///< that sun and sky have their light from
+};
+
 struct Scene {
   std::string file;
   PolygonSoup polygons;
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< names, by SurfaceId
   Lights lights;
+  std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
   std::vector<SensorSet> sensors;
   SolverSettings settings;
   std::vector<std::string> unused_materials;  ///< material rules of the scene file that matched nothing

@@ -78,4 +78,11 @@ Vec3 scene_direction(const Horizontal& direction, double north_deg) {
   return {std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e)};
 }
 
+Horizontal compass_direction(const Vec3& direction, double north_deg) {
+  const double across = std::hypot(direction.x, direction.y);
+  const double azimuth = across > 0 ? std::atan2(direction.x, direction.y) / kDegree - north_deg : 0;
+  const double turned = std::fmod(azimuth, 360);
+  return {std::atan2(direction.z, across) / kDegree, turned < 0 ? turned + 360 : turned};
+}
+
 }  // namespace clerestory

@@ -40,5 +40,7 @@ Horizontal sun_position(const Place& place, const Moment& moment);
 
 /// Unit direction in a scene with z up whose north is +y turned clockwise by north_deg.
 Vec3 scene_direction(const Horizontal& direction, double north_deg = 0);
+/// The way back: elevation and azimuth of a unit direction of the scene.
+Horizontal compass_direction(const Vec3& direction, double north_deg = 0);
 
 }  // namespace clerestory

@@ -170,6 +170,18 @@ TEST_F(BadInput, SensorRowsAreNamedByTheirNumber) {
   expect_refusal({"solve", scene, "-o", folder_ / "out.vtp", "--sensors", normal}, 3, {"normal.csv"});
 }
 
+TEST_F(BadInput, SensorKindsSayWhatTheyNeed) {
+  const std::string grid = R"("origin": [1, 1, 1], "u": [1, 0, 0], "v": [0, 1, 0], "spacing": 1 } ])";
+  const auto expect = [&](const std::string& members, const std::vector<std::string>& words) {
+    expect_room_refused(R"("materials": { "wall": { "exitance": 1 } }, "sensors": [ { )" + members + ", " + grid,
+                        words);
+  };
+  expect(R"("kind": "cylindric")", {"sensors[0].kind 'cylindric' is not known; did you mean 'cylindrical'?"});
+  expect(R"("kind": "camera")", {"sensors[0].camera is missing"});
+  expect(R"("kind": "camera", "camera": [2, 1, 1])", {"sensors[0].camera", "point 2 at (2, 1, 1)", "move one"});
+  expect(R"("threshold": 0)", {"sensors[0].threshold = 0 is outside (0, 1e15]; it is in lux"});
+}
+
 TEST_F(BadInput, WhatIsOnlyOddIsAWarning) {
   BoxScene{}.write(folder_);
   const auto warns = [&](const std::string& entries, const std::vector<std::string>& options,

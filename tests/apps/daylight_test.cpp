@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/run_program.h"
 
@@ -65,9 +66,18 @@ TEST(Daylight, TheOfficeInMarchHasTheLightOfItsHour) {
   // Hour 12 of data/skies/spring_day.epw.
   EXPECT_NE(check.out.find("Perez sky, 17800 lx"), std::string::npos) << check.out;
   EXPECT_NE(check.out.find("75400 lx"), std::string::npos) << check.out;
-  const ProgramRun run =
-      run_program({"solve", shipped_scene("office_march.json"), "-o", folder / "out.vtp", "--accuracy", "draft"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const ProgramRun run = run_program({"solve", shipped_scene("office_march.json"), "-o", folder / "out.vtp",
+                                      "--accuracy", "draft", "--report", folder / "report.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto daylight = nlohmann::json::parse(read_text(folder / "report.json")).at("daylight");
+  EXPECT_EQ(daylight.at("weather"), "spring_day.epw");
+  EXPECT_EQ(daylight.at("date"), "03-21");
+  EXPECT_EQ(daylight.at("hour"), 12);
+  EXPECT_EQ(daylight.at("sun_time"), "11:30");
+  // At the equinox, 48.8 N; half past eleven is 10:33 by the sun, so the sun stands some 1.45 h x 15 degrees off south:
+  // sin h = cos(48.8) cos(21.8) and a little declination.
+  EXPECT_NEAR(daylight.at("sun_elevation").get<double>(), 37.9, 0.6);
+  EXPECT_NEAR(daylight.at("sun_azimuth").get<double>(), 152, 2);
 }
 
 TEST(Daylight, AWeatherFileCutShortEndsWithExitCodeThree) {

@@ -169,6 +169,55 @@ TEST_F(SceneFile, SensorsAreGridsWithBothEndsAndFiles) {
   EXPECT_EQ(scene.sensors[2].points[0].normal, (Vec3{0, 0, 1}));  // u x v
 }
 
+TEST_F(SceneFile, SensorsHaveTheNormalsOfTheirKind) {
+  folder_.write("points.csv", "0,0,1,0,-1,0\n3,4,1,-1,0,0\n");
+  const std::string grid = R"("origin": [0, 0, 1], "u": [1, 0, 0], "v": [0, 0, 1], "spacing": 1)";
+  const Scene scene = read_with(R"("sensors": [ { )" + grid + R"( }, { "kind": "planar", )" + grid +
+                                R"(, "normal": [1, 0, 0] }, { "kind": "horizontal", )" + grid +
+                                R"( }, { "kind": "vertical", )" + grid + R"( }, { "kind": "cylindrical", )" + grid +
+                                R"( }, { "kind": "cylindrical", "normal": [0, 2, 0], )" + grid +
+                                R"( }, { "kind": "vertical", "file": "points.csv" }, { "kind": "horizontal", "file":
+      "points.csv", "threshold": 300 }, { "kind": "camera", "camera": [3, 4, 6], "file": "points.csv" } ])");
+  const auto normal = [&](std::size_t set, std::size_t i = 0) { return scene.sensors.at(set).points.at(i).normal; };
+  EXPECT_EQ(scene.sensors[0].kind, SensorKind::planar);
+  EXPECT_EQ(normal(0), (Vec3{0, -1, 0}));  // u x v
+  EXPECT_EQ(normal(1), (Vec3{1, 0, 0}));
+  EXPECT_EQ(scene.sensors[2].kind, SensorKind::horizontal);
+  EXPECT_EQ(normal(2), (Vec3{0, 0, 1}));
+  EXPECT_EQ(normal(3), (Vec3{0, -1, 0}));
+  EXPECT_EQ(scene.sensors[4].kind, SensorKind::cylindrical);
+  EXPECT_EQ(normal(4), (Vec3{0, 0, 1}));  // the axis
+  EXPECT_EQ(normal(5), (Vec3{0, 1, 0}));
+  EXPECT_EQ(normal(6, 1), (Vec3{-1, 0, 0}));
+  EXPECT_EQ(normal(7, 1), (Vec3{0, 0, 1}));
+  EXPECT_EQ(scene.sensors[7].threshold, 300);
+  EXPECT_FALSE(scene.sensors[6].threshold);
+  EXPECT_EQ(scene.sensors[8].kind, SensorKind::camera);
+  EXPECT_NEAR(length(normal(8, 0) - Vec3{3, 4, 5} / std::sqrt(50.0)), 0, 1e-15);
+  EXPECT_EQ(normal(8, 1), (Vec3{0, 0, 1}));
+}
+
+TEST_F(SceneFile, KeysThatDoNotGoWithAKindOfSensorAreRefused) {
+  folder_.write("points.csv", "0,0,1,0,-1,0\n0,0,1,0,0.6,0.8\n");
+  const auto of = [&](const std::string& says) { return refusal_with(R"("sensors": [ { )" + says + " } ])"); };
+  const std::string grid = R"(, "origin": [0, 0, 1], "u": [1, 0, 0], "v": [0, 1, 0], "spacing": 0.1)";
+  EXPECT_EQ(of(R"("kind": "horizontal", "normal": [0, 0, 1])" + grid),
+            "s.json: sensors[0].normal does not go with \"kind\": \"horizontal\", which faces up; leave it out");
+  EXPECT_EQ(of(R"("kind": "camera", "camera": [9, 9, 9], "normal": [0, 0, 1])" + grid),
+            "s.json: sensors[0].normal does not go with \"kind\": \"camera\", which faces the camera; leave it out");
+  EXPECT_EQ(of(R"("camera": [9, 9, 9])" + grid),
+            "s.json: sensors[0].camera does not go with \"kind\": \"planar\"; write \"kind\": \"camera\"");
+  EXPECT_EQ(of(R"("kind": "vertical")" + grid),
+            "s.json: sensors[0]: point 1 at (0, 0, 1) has the normal (0, 0, 1); \"kind\": \"vertical\" needs a "
+            "horizontal one, [0, -1, 0] for who looks to -y");
+  EXPECT_NE(of(R"("kind": "vertical", "file": "points.csv")").find("point 2 at (0, 0, 1) has the normal (0, 0.6, 0.8)"),
+            std::string::npos);
+  // 0.3 as 3 x 0.1 is not quite 0.3.
+  EXPECT_EQ(of(R"("kind": "camera", "camera": [0.3, 0, 1])" + grid),
+            "s.json: sensors[0].camera is where point 4 at (0.3, 0, 1) is, and a point cannot face itself; move one of "
+            "them");
+}
+
 TEST_F(SceneFile, SolverSettingsAreKept) {
   const SolverSettings s = read_with(R"("solver": { "method": "gauss-seidel", "accuracy": "fine", "max_element": 0.25,
                                      "target_error": 0.01, "time_limit": 30, "seed": 7 })")
@@ -385,6 +434,10 @@ TEST_F(SceneFile, NestingBombsAndSensorBombsAreRefusedAtOnce) {
   EXPECT_EQ(refusal(folder_.write("s.json", std::string(1'000'000, '['))), "s.json: is nested deeper than 32 levels");
   EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 1e-9 } ])"),
             "s.json: sensors[0].spacing = 1e-09 makes 1e+09 x 1e+09 points; at most 10000000 in one scene");
+  EXPECT_EQ(refusal_with(R"("sensors": [ { "kind": "cylindrical", "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0],
+                           "spacing": 0.001 } ])"),
+            "s.json: sensors[0].spacing = 0.001 makes 1001 x 1001 points; at most 10000000 in one scene, and each "
+            "cylindrical one counts as 17");
   EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 0 } ])"),
             "s.json: sensors[0].spacing = 0 is outside (0, 1e12]; it is in metres.");
 }

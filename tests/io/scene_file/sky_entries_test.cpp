@@ -46,6 +46,43 @@ TEST_F(SkyEntries, TheSunStandsWherePlaceAndTimeSay) {
   EXPECT_EQ(all_warnings(scene).find("location"), std::string::npos) << all_warnings(scene);
 }
 
+TEST_F(SkyEntries, TheSunInForceIsToldByTheCompass) {
+  const std::string north = R"("time": "2003-10-17T12:30:30",
+      "location": { "latitude": 39.742476, "longitude": -105.1786, "timezone": -7, "north": 120 })";
+  const Scene computed = read_with(R"("sun": { "normal_illuminance": 1 }, )" + north);
+  ASSERT_TRUE(computed.daylight);
+  // Reda & Andreas, 2004: zenith angle 50.11162, azimuth 194.34024 degrees; north of the scene does not change them.
+  EXPECT_NEAR(computed.daylight->sun.elevation_deg, 90 - 50.11162, 0.01);
+  EXPECT_NEAR(computed.daylight->sun.azimuth_deg, 194.34024, 0.01);
+  ASSERT_TRUE(computed.daylight->time);
+  EXPECT_NEAR(computed.daylight->time->hour, 12 + 30.5 / 60, 1e-9);
+  EXPECT_FALSE(computed.daylight->weather);
+
+  const Scene given = read_with(R"("sun": { "direction": [-3, 0, 4], "normal_illuminance": 1 })");
+  ASSERT_TRUE(given.daylight);
+  EXPECT_NEAR(given.daylight->sun.elevation_deg, std::asin(0.8) * 180 / kPi, 1e-9);
+  EXPECT_NEAR(given.daylight->sun.azimuth_deg, 270, 1e-9);
+  EXPECT_FALSE(given.daylight->time);
+
+  EXPECT_FALSE(read_with(R"("sky": { "model": "cie-overcast", "horizontal_illuminance": 1 }, )" + kExample).daylight)
+      << "an overcast sky goes by no sun";
+}
+
+TEST_F(SkyEntries, TheHourOfAWeatherFileIsTold) {
+  const Scene scene = read_with(R"("sky": { "weather": "city.epw" }, "time": "2003-10-17T13:00")");
+  ASSERT_TRUE(scene.daylight && scene.daylight->weather);
+  EXPECT_EQ(scene.daylight->weather->file, "city.epw");
+  EXPECT_EQ(scene.daylight->weather->month, 10);
+  EXPECT_EQ(scene.daylight->weather->day, 17);
+  EXPECT_EQ(scene.daylight->weather->hour, 13);
+  EXPECT_NEAR(scene.daylight->time->hour, 12.5, 1e-9);
+  EXPECT_NEAR(scene.daylight->sun.azimuth_deg, 194.2, 0.3);
+  // By its number, and with the sun left out of the light.
+  const Scene by_day = read_with(R"("sky": { "weather": "city.epw", "day_of_year": 290, "hour": 13 }, "sun": false)");
+  EXPECT_EQ(by_day.daylight->weather->hour, 13);
+  EXPECT_NEAR(by_day.daylight->sun.elevation_deg, scene.daylight->sun.elevation_deg, 1e-9);
+}
+
 TEST_F(SkyEntries, NorthTurnsTheSunClockwise) {
   const Scene scene = read_with(R"("sun": { "normal_illuminance": 1 }, "time": "2003-10-17T12:30:30",
       "location": { "latitude": 39.742476, "longitude": -105.1786, "timezone": -7, "north": 90 })");

@@ -83,6 +83,18 @@ TEST(SceneDirection, TurnsClockwiseFromNorth) {
   expect(scene_direction({0, 180}, 90), {-1, 0, 0});
 }
 
+TEST(CompassDirection, LeadsBackFromTheScene) {
+  for (const double north : {0.0, 30.0, -200.0, 725.0})
+    for (const Horizontal& sun : {Horizontal{10, 0}, {-5, 89}, {60, 181}, {30, 359}}) {
+      const Horizontal back = compass_direction(scene_direction(sun, north), north);
+      EXPECT_NEAR(back.elevation_deg, sun.elevation_deg, 1e-9);
+      EXPECT_NEAR(std::remainder(back.azimuth_deg - sun.azimuth_deg, 360), 0, 1e-9) << north;
+      EXPECT_GE(back.azimuth_deg, 0);
+      EXPECT_LT(back.azimuth_deg, 360);
+    }
+  EXPECT_NEAR(compass_direction({0, 0, 1}).elevation_deg, 90, 1e-12);
+}
+
 TEST(DayOfYear, CountsLeapDays) {
   EXPECT_EQ(day_of_year({2026, 1, 1, 0}), 1);
   EXPECT_EQ(day_of_year({2026, 12, 31, 0}), 365);

@@ -30,7 +30,7 @@ class AreaCells {
 
 /// How finely an area is looked at.
 struct AreaBudget {
-  int first = 2, last = 6;  ///< grids that it is looked at on, finer ones only along edges
+  int first = 2, last = 6;       ///< grids that it is looked at on, finer ones only along edges
   double tolerance = 0.003;      ///< no finer grid once the edges' error is below, of all light at the point [1]
   std::size_t most_rays = 8192;  ///< about so many, pilots and what counts together: no finer grid than they allow
 };

@@ -32,7 +32,7 @@ struct RayBudget {
 /// How many rays a point gets. Defaults suit a sensor.
 struct GatherQuality {
   RayBudget bundle{16, 1024, 4096};  ///< over the hemisphere
-  AreaBudget area{};      ///< to each opening and each panel that matters
+  AreaBudget area{};                 ///< to each opening and each panel that matters
   int lamp_rays = 128;               ///< shadow rays to bright patches, a multiple of 16
   int sun_rays = 16;                 ///< to each sun
 };

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kWorthLooking = 0.1;  ///< share of the bright patches' light in those that are not in panels looked at
-constexpr double kLeastOfBest = 0.2;  ///< of the light of the best panel, else it has no rays of its own
+constexpr double kLeastOfBest = 0.2;   ///< of the light of the best panel, else it has no rays of its own
 constexpr std::size_t kMostOpenings = 8, kMostPanels = 4;  ///< that a point looks at by rays of their own
 /// Owners of rays: openings and, from kPanels on, panels, by number.
 constexpr std::uint32_t kPanels = 0x80000000, kNobody = kNoOpening;
@@ -25,8 +25,7 @@ constexpr std::uint32_t kPanels = 0x80000000, kNobody = kNoOpening;
 /// What comes back along rays from one point.
 class View {
  public:
-  View(const Illumination& light, const Vec3& p, const Frame& frame, int lamp_rays,
-       const GatherPlan& plan)
+  View(const Illumination& light, const Vec3& p, const Frame& frame, int lamp_rays, const GatherPlan& plan)
       : light_(light), p_(p), frame_(frame), lamp_rays_(lamp_rays), plan_(plan) {}
 
   /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
@@ -96,8 +95,8 @@ bool sees_lamps(const Illumination& light, const Vec3& p, const Vec3& n, const G
   return false;
 }
 
-/// What a few rays find of sky that belongs to none of the openings: part of the view may be sky, or end at a bright spot of
-/// it, and all of it may be.
+/// What a few rays find of sky that belongs to none of the openings: part of the view may be sky, or end at a bright
+/// spot of it, and all of it may be.
 enum class SkyInView { none, edge, all };
 SkyInView sky_in_view(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
                       std::span<const std::uint32_t> openings, unsigned long long& rays) {
@@ -176,7 +175,7 @@ Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& sh
 /// What pilot rays find in each stratum; 0 where they do not belong to `owner`.
 template <class Value, class Sight>
 std::vector<Spectrum> pilot_values(const View& view, const Strata<Value>& strata, std::uint32_t owner,
-                                 const Sight& sight, unsigned long long& rays) {
+                                   const Sight& sight, unsigned long long& rays) {
   const int count = strata.budget().strata();
   const double share = 1.0 / (count << strata.budget().least());
   std::vector<Spectrum> found(static_cast<std::size_t>(count));
@@ -271,7 +270,8 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
     double last = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [direction, per_share] = sights[k];
-      const Spectrum E = (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan.cells[first + k].share());
+      const Spectrum E =
+          (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan.cells[first + k].share());
       sum.E += E;
       if (k % 2 == 1) sum.noise += (luminous_mean(E) - last) * (luminous_mean(E) - last);
       last = luminous_mean(E);
@@ -380,8 +380,8 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   const int to_lamps = lamp_rays(light, pattern, plan);
   const Frame frame(n);
   const View view(light, p, frame, to_lamps, plan);
-  Sum sum = integrate(view, pattern.bundle(), plan.bundle, kNobody, bundle_sight(frame),
-                      [](const Vec3&, double) { return 1.0; }, rays);
+  Sum sum = integrate(
+      view, pattern.bundle(), plan.bundle, kNobody, bundle_sight(frame), [](const Vec3&, double) { return 1.0; }, rays);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
     const PolygonView polygon(p, n, area.triangles, area.corners);
     if (!(polygon.solid_angle() > 0)) return;

@@ -24,7 +24,7 @@ using RayShares = std::vector<std::uint8_t>;
 /// is biased; the plan serves points nearby too.
 struct GatherPlan {
   RayShares bundle;
-  bool looks_for_lamps = true;            ///< by shadow rays; else bright patches are left to the bundle
+  bool looks_for_lamps = true;                       ///< by shadow rays; else bright patches are left to the bundle
   std::vector<std::uint32_t> openings, panels;       ///< looked at by rays of their own
   std::vector<AreaPlan> opening_plans, panel_plans;  ///< of each of them; values are pi times the radiance [W/m2]
 };
@@ -37,10 +37,11 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 /// Irradiance at p (lifted) on a plane of unit normal n.
 ///
 /// Luminaires and sun by shadow rays. What lies behind the openings of the plan by rays through them, and its panels by
-/// rays at them, and by nothing else: a ray belongs to the first of the openings that it passes, else to the panel that it
-/// meets. Only what differs from the mean that the plan knows is left to chance: form factors times that mean are closed
-/// forms, so an even sky or lamp that nothing hides is exact. Other bright patches, glowing or lit, by shadow rays and by the bundle, weighted by the balance heuristic; the
-/// rest by the bundle, which looks up B (or the sky) where its rays land.
+/// rays at them, and by nothing else: a ray belongs to the first of the openings that it passes, else to the panel that
+/// it meets. Only what differs from the mean that the plan knows is left to chance: form factors times that mean are
+/// closed forms, so an even sky or lamp that nothing hides is exact. Other bright patches, glowing or lit, by shadow
+/// rays and by the bundle, weighted by the balance heuristic; the rest by the bundle, which looks up B (or the sky)
+/// where its rays land.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.

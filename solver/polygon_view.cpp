@@ -9,9 +9,9 @@
 namespace clerestory {
 namespace {
 
-constexpr double kSquare = 1e-6;         ///< cosine of the corners of a rectangle
+constexpr double kSquare = 1e-6;          ///< cosine of the corners of a rectangle
 constexpr double kSmallRectangle = 1e-4;  ///< [sr] below this the formula loses too many digits
-constexpr double kTooSmall = 1e-6;  ///< [sr] below this the formula loses too many digits
+constexpr double kTooSmall = 1e-6;        ///< [sr] below this the formula loses too many digits
 
 /// The part of c that is perpendicular to the unit vector a, as a unit vector.
 Vec3 perpendicular(const Vec3& c, const Vec3& a) { return normalized(c - a * dot(a, c)); }

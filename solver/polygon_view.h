@@ -11,11 +11,11 @@ namespace clerestory {
 
 /// Directions from p to the part of a polygon above p's horizon.
 ///
-/// Of rectangles, which most windows and lamps are, u and v run along the sides: edges along them (sills, horizons, shelves)
-/// pass few cells of a grid. Of other polygons, (u, v) goes to one of the triangles in proportion to its solid angle, and
-/// evenly into it. p may lie anywhere: in the polygon's plane it sees nothing. Cost: 0.3 us.
-/// Sources: Urena, Fajardo & King, "An area-preserving parametrization for spherical rectangles", 2013; Arvo, "Stratified
-/// sampling of spherical triangles", 1995; triangles too small for it are taken as plane.
+/// Of rectangles, which most windows and lamps are, u and v run along the sides: edges along them (sills, horizons,
+/// shelves) pass few cells of a grid. Of other polygons, (u, v) goes to one of the triangles in proportion to its solid
+/// angle, and evenly into it. p may lie anywhere: in the polygon's plane it sees nothing. Cost: 0.3 us. Sources: Urena,
+/// Fajardo & King, "An area-preserving parametrization for spherical rectangles", 2013; Arvo, "Stratified sampling of
+/// spherical triangles", 1995; triangles too small for it are taken as plane.
 class PolygonView {
  public:
   /// triangles  that cover the polygon and do not overlap; corners: its outline.

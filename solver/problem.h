@@ -14,8 +14,8 @@ struct Problem {
   const Lights& lights;
 };
 
-/// The lights as all that follows wants them: in the local frame of the patches, with an image behind each mirror, and with
-/// the openings through which the sky looks in.
+/// The lights as all that follows wants them: in the local frame of the patches, with an image behind each mirror, and
+/// with the openings through which the sky looks in.
 Lights local_lights(const Lights& lights, const PatchSet& patches, const RayScene& rays);
 
 /// Lights moved into the local frame of the patches.

@@ -108,8 +108,8 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
 }
 
 /// Scales what the field has of all light but that of sun and lamps, so that its flux is that of the transport: the
-/// vertices share their directions, and so a small error, while the bundles of the elements are independent of each other.
-/// What differs by more is no such error, and stays.
+/// vertices share their directions, and so a small error, while the bundles of the elements are independent of each
+/// other. What differs by more is no such error, and stays.
 void correct_flux(const HierarchicalSolution& coarse, const Field& E, const ElementMesh& mesh, VertexField& field) {
   constexpr double kMost = 0.01;
   if (!field.complete || coarse.small_lights.value.empty()) return;
@@ -124,7 +124,8 @@ void correct_flux(const HierarchicalSolution& coarse, const Field& E, const Elem
       found += std::ldexp(mesh.patches().area[mesh[leaves[i]].patch], -mesh[leaves[i]].level) * on_leaves.at(i, c);
     const double ratio = found > 0 ? exact / found : 1;
     if (std::abs(ratio - 1) > kMost) continue;
-    for (std::size_t p = 0; p < rest.size(); ++p) field.E.at(p, c) = field.small_lights.at(p, c) + ratio * rest.at(p, c);
+    for (std::size_t p = 0; p < rest.size(); ++p)
+      field.E.at(p, c) = field.small_lights.at(p, c) + ratio * rest.at(p, c);
   }
 }
 

@@ -191,8 +191,8 @@ class Tracer {
   /// Whether direct light has looked for this ray's sky through an opening.
   bool is_looked_for(std::uint32_t patch, const Ray& ray, const Hit& hit) const {
     const auto openings = direct_.openings.of(patch);
-    return !openings.empty() && first_way_out(light_.problem.lights.openings, openings, ray.origin, ray.direction,
-                                              hit.first) != kNoOpening;
+    return !openings.empty() &&
+           first_way_out(light_.problem.lights.openings, openings, ray.origin, ray.direction, hit.first) != kNoOpening;
   }
 
   /// One pair of a point of the receiver with one of a bright patch.
@@ -210,8 +210,8 @@ class Tracer {
     return {from, s.density > 0 ? s.end : from, member.normal, s};
   }
 
-  /// Under the sky bright patches mostly lie outdoors, and most receivers do not see them: a few pairs tell. Without any
-  /// that gets through, bright patches are left to the bundle.
+  /// Under the sky bright patches mostly lie outdoors, and most receivers do not see them: a few pairs tell. Without
+  /// any that gets through, bright patches are left to the bundle.
   bool sees_bright_patches() const {
     SegmentPacket segments;
     unsigned active = 0;

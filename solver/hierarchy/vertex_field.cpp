@@ -101,8 +101,8 @@ class Gatherer {
   const GatherPattern pattern_;
   const ElementMesh& mesh_;
   bool pilots_;
-  std::vector<bool> worth_;              ///< by point of the mesh as it was at first
-  std::vector<std::uint32_t> pilot_of_;  ///< by point: the one that sent a pilot for it
+  std::vector<bool> worth_;                       ///< by point of the mesh as it was at first
+  std::vector<std::uint32_t> pilot_of_;           ///< by point: the one that sent a pilot for it
   std::vector<std::optional<GatherPlan>> plans_;  ///< by point of the mesh as it was at first
 };
 

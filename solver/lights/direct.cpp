@@ -219,7 +219,8 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
   const std::vector<LightArea>& openings = problem.lights.openings;
   const Vec3 n = problem.patches.normal[patch];
   const auto corners = problem.patches.corner_positions(PatchId{patch});
-  std::vector<std::uint32_t> over = areas_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings, 0);
+  std::vector<std::uint32_t> over =
+      areas_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings, 0);
   for (const Vec3& corner : corners)  // all of a patch may see of it is from one corner
     for (const std::uint32_t k : areas_over(openings, corner, n, 1, 0)) over.push_back(k);
   std::sort(over.begin(), over.end());
@@ -263,7 +264,8 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
     const Ray ray{point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
                   cosine_direction(frame, u[0], u[1])};
     const Hit hit = problem.rays.first_hit(problem.patches, ray);
-    if (hit.escaped() && first_way_out(problem.lights.openings, looked_at, ray.origin, ray.direction, hit.first) == kNoOpening)
+    if (hit.escaped() &&
+        first_way_out(problem.lights.openings, looked_at, ray.origin, ray.direction, hit.first) == kNoOpening)
       sum += light.sky(hit.direction(ray)) * hit.transmittance;
   }
   return sum * (std::numbers::pi / options.sky_rays);

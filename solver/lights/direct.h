@@ -11,9 +11,9 @@
 namespace clerestory {
 
 struct DirectOptions {
-  int lamp_rays = 16;   ///< shadow rays from a patch to each lamp and sun, a multiple of 16
-  int edge_rays = 256;  ///< instead, where as many rays of a pilot disagree: the patch lies on the edge of a shadow
-  int sky_rays = 256;   ///< cosine rays a patch that look for the sky; 0: without sky but through openings
+  int lamp_rays = 16;     ///< shadow rays from a patch to each lamp and sun, a multiple of 16
+  int edge_rays = 256;    ///< instead, where as many rays of a pilot disagree: the patch lies on the edge of a shadow
+  int sky_rays = 256;     ///< cosine rays a patch that look for the sky; 0: without sky but through openings
   int opening_rays = 32;  ///< through each opening that matters
   std::uint64_t seed = 1;
   bool rough_first = true;  ///< with a deadline: all patches get a rough value, in case it comes before the good ones
@@ -31,9 +31,9 @@ struct OpeningsOfPatches {
 };
 
 struct DirectLight {
-  Field E;               ///< N x channels, mean irradiance of each patch [W/m2]
-  /// N x channels, the part of the sky's that comes straight through an opening looked at by its own rays; bundles leave
-  /// it out. Part of E when DirectOptions has sky rays [W/m2].
+  Field E;  ///< N x channels, mean irradiance of each patch [W/m2]
+  /// N x channels, the part of the sky's that comes straight through an opening looked at by its own rays; bundles
+  /// leave it out. Part of E when DirectOptions has sky rays [W/m2].
   Field E_openings;
   OpeningsOfPatches openings;  ///< those looked at, by patch
   EnergyBalance energy;  ///< emitted: luminaires' flux, and what sky and sun bring in; escaped and absorbed (by glass

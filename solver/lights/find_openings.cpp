@@ -15,11 +15,11 @@ namespace clerestory {
 namespace {
 
 constexpr std::uint64_t kGapRays = 0x81;
-constexpr int kFewRays = 16, kRays = 128;      ///< to a side, to sift and to judge
-constexpr double kSeesSky = 0.1;               ///< share of the rays out that meet sky
-constexpr double kIndoors = 0.2;               ///< most of the rays in that do
-constexpr double kWideOpen = 0.5;              ///< and those that do so mostly are preferred
-constexpr double kNew = 0.1;                   ///< of the rays out, those that see sky which no other opening shows
+constexpr int kFewRays = 16, kRays = 128;  ///< to a side, to sift and to judge
+constexpr double kSeesSky = 0.1;           ///< share of the rays out that meet sky
+constexpr double kIndoors = 0.2;           ///< most of the rays in that do
+constexpr double kWideOpen = 0.5;          ///< and those that do so mostly are preferred
+constexpr double kNew = 0.1;               ///< of the rays out, those that see sky which no other opening shows
 constexpr std::size_t kMostTriangles = 2'000'000, kMostOpenings = 500;
 
 struct SkySeen {
@@ -28,7 +28,8 @@ struct SkySeen {
 
 class Judge {
  public:
-  Judge(const PatchSet& patches, const RayScene& rays, const SkyRadiance& sky) : patches_(patches), rays_(rays), sky_(sky) {}
+  Judge(const PatchSet& patches, const RayScene& rays, const SkyRadiance& sky)
+      : patches_(patches), rays_(rays), sky_(sky) {}
 
   SkySeen sky_from(const LightArea& o, const Vec3& side, int count, std::uint64_t key) const {
     SkySeen seen;
@@ -69,7 +70,8 @@ class Judge {
       const Ray ray = ray_through(o, -o.normal, key, static_cast<std::uint32_t>(k), rays_.lift());
       if (!rays_.first_hit(patches_, ray).escaped()) continue;
       const Vec3 inside = ray.origin - ray.direction * (1e-5 * rays_.diameter());
-      more += std::ranges::none_of(others, [&](const LightArea& other) { return way_out(other, inside, ray.direction) >= 0; });
+      more += std::ranges::none_of(others,
+                                   [&](const LightArea& other) { return way_out(other, inside, ray.direction) >= 0; });
     }
     return more > kNew * kRays;
   }

@@ -66,7 +66,7 @@ Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, s
 }
 
 std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
-                                         std::size_t most, double least_of_best) {
+                                      std::size_t most, double least_of_best) {
   constexpr double kNothing = 1e-9;
   std::vector<std::pair<double, std::uint32_t>> found;  // by light, the most first
   for (std::uint32_t k = 0; k < openings.size(); ++k) {

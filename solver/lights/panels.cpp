@@ -32,7 +32,8 @@ struct Flat {
 std::vector<Flat> convex_hull(std::vector<Flat> points) {
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  const double size = points.empty() ? 0 : std::hypot(points.back().x - points.front().x, points.back().y - points.front().y);
+  const double size =
+      points.empty() ? 0 : std::hypot(points.back().x - points.front().x, points.back().y - points.front().y);
   std::vector<Flat> hull;
   const auto run = [&](auto begin, auto end) {
     const std::size_t start = hull.size();
@@ -123,9 +124,8 @@ Panels find_panels(const PatchSet& patches, const LightSampler& lamps) {
   std::vector<std::vector<std::uint32_t>> groups = plane_groups(patches, glowing);
   if (groups.size() > kFewPlanes) groups = plane_groups(patches, bright);
   const auto flux = [&](const std::vector<std::uint32_t>& group) {
-    return std::accumulate(group.begin(), group.end(), 0.0, [&](double sum, std::uint32_t p) {
-      return sum + patches.area[p] * luminous_mean(glow[p]);
-    });
+    return std::accumulate(group.begin(), group.end(), 0.0,
+                           [&](double sum, std::uint32_t p) { return sum + patches.area[p] * luminous_mean(glow[p]); });
   };
   std::vector<std::pair<double, std::uint32_t>> by_flux;
   for (std::uint32_t g = 0; g < groups.size(); ++g) by_flux.emplace_back(-flux(groups[g]), g);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kSamePlane = 1e-4;         ///< sine of the angle between normals
 constexpr double kStraight = 1e-4;          ///< sine of the angle between edges that continue each other
 constexpr std::size_t kMostEdges = 20'000;  ///< rims that are tried, the longest
-constexpr std::size_t kMostPlanes = 3000;    ///< surfaces that are looked for in each other's planes, those of most rim
+constexpr std::size_t kMostPlanes = 3000;   ///< surfaces that are looked for in each other's planes, those of most rim
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// An edge of a plane surface beyond which its plane goes on as air; the surface lies to the left of a -> b.
@@ -63,7 +63,8 @@ Vec3 normal_of(const PatchSet& patches, std::size_t t) {
 bool continues(const PatchSet& patches, const EdgeUse& one, const EdgeUse& other) {
   const Vec3 n = normal_of(patches, one.triangle), m = normal_of(patches, other.triangle);
   if (length(cross(n, m)) > kSamePlane) return false;
-  const Vec3 a = patches.vertices[VertexId{std::size_t{one.low}}], along = patches.vertices[VertexId{std::size_t{one.high}}] - a;
+  const Vec3 a = patches.vertices[VertexId{std::size_t{one.low}}],
+             along = patches.vertices[VertexId{std::size_t{one.high}}] - a;
   const Vec3 away = cross(along, n);
   return dot(away, patches.vertices[VertexId{std::size_t{one.apex}}] - a) *
              dot(away, patches.vertices[VertexId{std::size_t{other.apex}}] - a) <
@@ -106,13 +107,15 @@ std::vector<Sheet> find_sheets(const PatchSet& patches, std::vector<FreeEdge>& f
     }
     Sheet& sheet = sheets[sheet_of[t]];
     if (!(length(sheet.normal) > 0.5)) continue;  // of a triangle without area
-    const Vec3 a = patches.vertices[VertexId{std::size_t{rim.low}}], b = patches.vertices[VertexId{std::size_t{rim.high}}];
+    const Vec3 a = patches.vertices[VertexId{std::size_t{rim.low}}],
+               b = patches.vertices[VertexId{std::size_t{rim.high}}];
     const bool left = dot(cross(b - a, patches.vertices[VertexId{std::size_t{rim.apex}}] - a), sheet.normal) > 0;
     sheet.rims.push_back(left ? Rim{rim.low, rim.high} : Rim{rim.high, rim.low});
     sheet.rim_length += length(b - a);
   }
   std::erase_if(sheets, [](const Sheet& s) { return s.rims.empty(); });
-  std::stable_sort(sheets.begin(), sheets.end(), [](const Sheet& a, const Sheet& b) { return a.rim_length > b.rim_length; });
+  std::stable_sort(sheets.begin(), sheets.end(),
+                   [](const Sheet& a, const Sheet& b) { return a.rim_length > b.rim_length; });
   return sheets;
 }
 
@@ -125,7 +128,8 @@ struct Chain {
 /// Chains end where more than one rim goes on.
 std::vector<Chain> chains_of(const Sheet& sheet) {
   std::vector<Rim> by_start = sheet.rims;
-  std::sort(by_start.begin(), by_start.end(), [](const Rim& x, const Rim& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
+  std::sort(by_start.begin(), by_start.end(),
+            [](const Rim& x, const Rim& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
   const auto starting_at = [&](std::uint32_t v) {
     return std::ranges::equal_range(by_start, v, {}, [](const Rim& r) { return r.a; });
   };
@@ -198,7 +202,9 @@ class LoopFinder {
 
  private:
   Vec3 place(std::uint32_t v) const { return patches_.vertices[VertexId{std::size_t{v}}]; }
-  std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const { return edges_[e].a == v ? edges_[e].b : edges_[e].a; }
+  std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const {
+    return edges_[e].a == v ? edges_[e].b : edges_[e].a;
+  }
   Vec3 along(std::uint32_t e, std::uint32_t from) const { return normalized(place(other_end(e, from)) - place(from)); }
 
   /// Goes from v along `out` in the plane of both edges, until it comes back along `back`.
@@ -223,7 +229,8 @@ class LoopFinder {
     std::vector<Vec3> corners = without_straight_corners(patches_, chain);
     if (corners.size() >= 3) gaps.push_back({std::move(corners), true});
   }
-  std::ranges::subrange<std::vector<std::pair<std::uint32_t, std::uint32_t>>::const_iterator> around(std::uint32_t v) const {
+  std::ranges::subrange<std::vector<std::pair<std::uint32_t, std::uint32_t>>::const_iterator> around(
+      std::uint32_t v) const {
     return std::ranges::equal_range(at_vertex_, v, {}, [](const auto& use) { return use.first; });
   }
   bool is_corner(std::uint32_t v) const {

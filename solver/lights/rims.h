@@ -14,7 +14,8 @@ struct Gap {
   bool is_hole = false;  ///< edges of surfaces run all around it
 };
 
-/// Holes in plane surfaces and where a whole wall of sheets is missing, then strips between a rim and what stands opposite of it in the rim's plane; they may overlap.
+/// Holes in plane surfaces and where a whole wall of sheets is missing, then strips between a rim and what stands
+/// opposite of it in the rim's plane; they may overlap.
 std::vector<Gap> find_gaps(const PatchSet& patches, const RayScene& rays);
 
 }  // namespace clerestory

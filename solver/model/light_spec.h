@@ -69,8 +69,8 @@ struct Sun {
   std::uint32_t mirror = kNoMirror;  ///< as of PointLuminaire
 };
 
-/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room, or
-/// bright patches that lie together. Only a hint where to look: what it misses is found as well.
+/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room,
+/// or bright patches that lie together. Only a hint where to look: what it misses is found as well.
 struct LightArea {
   std::vector<Vec3> corners;                   ///< counter-clockwise around the normal, local frame [m]
   std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, wound alike [m]
@@ -84,7 +84,7 @@ struct Lights {
   std::vector<SpotLuminaire> spots;
   std::vector<WebLuminaire> webs;
   std::optional<Sky> sky;
-  std::vector<Sun> suns;  ///< the scene's sun, and directional lights of a glTF file
+  std::vector<Sun> suns;            ///< the scene's sun, and directional lights of a glTF file
   std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
 
   std::size_t lamp_count() const { return points.size() + spots.size() + webs.size(); }

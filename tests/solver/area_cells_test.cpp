@@ -57,7 +57,8 @@ Estimate estimate(const AreaBudget& budget, std::uint64_t seed, const Value& val
 
 TEST(PlanArea, CellsCoverTheSquareOnce) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Estimate e = estimate({.tolerance = 0}, seed, [](double u, double v) { return u + 0.3 * v < 0.21 ? 1.0 : 0.0; });
+    const Estimate e =
+        estimate({.tolerance = 0}, seed, [](double u, double v) { return u + 0.3 * v < 0.21 ? 1.0 : 0.0; });
     double share = 0;
     for (const AreaCell& cell : e.plan.cells) share += cell.share();
     EXPECT_NEAR(share, 1, 1e-12);
@@ -96,7 +97,8 @@ TEST(PlanArea, IsUnbiasedAndAccurateAlongAStraightEdge) {
 TEST(PlanArea, RaysStayWithinTheirBudget) {
   for (const std::size_t most : {512u, 2048u, 8192u})
     EXPECT_LE(estimate({.tolerance = 0, .most_rays = most}, 3,
-                       [](double u, double v) { return std::fmod(17 * u + 11 * v, 1) < 0.5 ? 1.0 : 0.0; }).rays,
+                       [](double u, double v) { return std::fmod(17 * u + 11 * v, 1) < 0.5 ? 1.0 : 0.0; })
+                  .rays,
               2 * most);
 }
 

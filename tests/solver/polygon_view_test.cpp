@@ -14,7 +14,9 @@ namespace {
 
 using Triangles = std::vector<std::array<Vec3, 3>>;
 
-Triangles rectangle(const Vec3& o, const Vec3& u, const Vec3& v) { return {{o, o + u, o + u + v}, {o, o + u + v, o + v}}; }
+Triangles rectangle(const Vec3& o, const Vec3& u, const Vec3& v) {
+  return {{o, o + u, o + u + v}, {o, o + u + v, o + v}};
+}
 /// As a rectangle, and as two triangles.
 std::array<PolygonView, 2> views(const Vec3& p, const Vec3& n, const Triangles& t) {
   const std::array<Vec3, 4> corners{t[0][0], t[0][1], t[0][2], t[1][2]};
@@ -65,21 +67,22 @@ TEST(PolygonView, DirectionsIntegrateToTheFormFactor) {
 }
 
 TEST(PolygonView, EveryDirectionMeetsThePolygonAboveTheHorizon) {
-  for (const Seen& s : kSeen) for (const PolygonView& view : views(s.p, s.n, s.polygon)) {
-    for (std::uint32_t k = 0; k < 1000; ++k) {
-      const auto u = sobol4(k, 5);
-      const Vec3 d = view.look(u[0], u[1]).direction;
-      EXPECT_NEAR(length(d), 1, 1e-12);
-      EXPECT_GT(dot(d, s.n), -1e-9) << s.name;
-      const Vec3 o = s.polygon[0][0], along = s.polygon[0][1] - o, across = s.polygon[1][2] - o;
-      const Vec3 normal = cross(along, across);
-      const Vec3 x = s.p + d * (dot(o - s.p, normal) / dot(d, normal)) - o;
-      for (const Vec3& axis : {along, across}) {
-        EXPECT_GT(dot(x, axis) / dot(axis, axis), -1e-6) << s.name;
-        EXPECT_LT(dot(x, axis) / dot(axis, axis), 1 + 1e-6) << s.name;
+  for (const Seen& s : kSeen)
+    for (const PolygonView& view : views(s.p, s.n, s.polygon)) {
+      for (std::uint32_t k = 0; k < 1000; ++k) {
+        const auto u = sobol4(k, 5);
+        const Vec3 d = view.look(u[0], u[1]).direction;
+        EXPECT_NEAR(length(d), 1, 1e-12);
+        EXPECT_GT(dot(d, s.n), -1e-9) << s.name;
+        const Vec3 o = s.polygon[0][0], along = s.polygon[0][1] - o, across = s.polygon[1][2] - o;
+        const Vec3 normal = cross(along, across);
+        const Vec3 x = s.p + d * (dot(o - s.p, normal) / dot(d, normal)) - o;
+        for (const Vec3& axis : {along, across}) {
+          EXPECT_GT(dot(x, axis) / dot(axis, axis), -1e-6) << s.name;
+          EXPECT_LT(dot(x, axis) / dot(axis, axis), 1 + 1e-6) << s.name;
+        }
       }
     }
-  }
 }
 
 TEST(PolygonView, SharesOfTheSquareAreSharesOfTheSolidAngle) {
@@ -87,13 +90,13 @@ TEST(PolygonView, SharesOfTheSquareAreSharesOfTheSolidAngle) {
   const Triangles square = rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
   constexpr int kPoints = 4096;
   for (const PolygonView& view : views({0, 1.5, 0}, {0, -1, 0}, square)) {
-  int count = 0;
-  for (std::uint32_t k = 0; k < kPoints; ++k) {
-    const auto u = sobol4(k, 9);
-    const Vec3 d = view.look(u[0], u[1]).direction;
-    count += d.x > 0 && d.z > 0;
-  }
-  EXPECT_NEAR(count, kPoints / 4, kPoints * 0.004);
+    int count = 0;
+    for (std::uint32_t k = 0; k < kPoints; ++k) {
+      const auto u = sobol4(k, 9);
+      const Vec3 d = view.look(u[0], u[1]).direction;
+      count += d.x > 0 && d.z > 0;
+    }
+    EXPECT_NEAR(count, kPoints / 4, kPoints * 0.004);
   }
 }
 

@@ -27,7 +27,7 @@ struct LitRoom {
 SceneMaker room_with_ceiling_lamp() {
   SceneMaker m;
   m.box({0, 0, 0}, {4, 4, 3});
-  for (Material& material : m.edit_all()) material.reflectance = Spectrum(0.0);
+  for (Material& material : m.scene().materials) material.reflectance = Spectrum(0.0);
   const MaterialId lamp = m.material("lamp", 0);
   m.edit(lamp).exitance = Spectrum(100);
   m.edit(lamp).sides = 1;

@@ -23,7 +23,7 @@ struct SensorPlanes {
 /// (EN 12464-1, EN 12665), here over kCylinderPlanes of them, evenly spaced.
 ///
 /// Their number N is odd: cos^+ has no odd harmonics but the first, so N planes err like 2 N, for a single point light
-/// by up to 2 / (4 N^2 - 1) = 0.17 %, for light from a sky or walls by nothing to speak of.
+/// by up to 1 - x / tan(x) = 0.19 %, x = pi / (2 N), for light from a sky or walls by nothing to speak of.
 SensorPlanes planes_of(std::span<const SensorSet> sets);
 
 /// The mean over each sensor's planes, S x channels, of the irradiance E on all planes.

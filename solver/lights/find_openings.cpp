@@ -126,6 +126,13 @@ std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& ra
   for (std::size_t k = 0; k < candidates.size() && openings.size() < kMostOpenings; ++k)
     if (judge.shows_more(candidates[k].opening, openings, stream_key(kGapRays + 1, k)))
       openings.push_back(std::move(candidates[k].opening));
+  // The inner face of a thick wall may have come before the outer one.
+  for (std::size_t k = openings.size(); k > 0; --k) {
+    LightArea opening = std::move(openings[k - 1]);
+    openings.erase(openings.begin() + static_cast<std::ptrdiff_t>(k - 1));
+    if (judge.shows_more(opening, openings, stream_key(kGapRays + 2, k)))
+      openings.insert(openings.begin() + static_cast<std::ptrdiff_t>(k - 1), std::move(opening));
+  }
   return openings;
 }
 

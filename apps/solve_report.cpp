@@ -25,6 +25,7 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   std::vector<std::string> out;
   if (s.patches.channels == 1) out.push_back("colour: everything is grey, one channel is solved");
   if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
+  if (scene.lights.sky && s.openings == 0) out.push_back("openings: the sky looks into no room");
   if (scene.lights.lamp_count() == 0) out.push_back("luminaires: the scene has none");
   const auto none_is = [&](MaterialKind kind) {
     return std::ranges::none_of(s.patches.materials, [&](const Material& m) { return m.kind == kind; });
@@ -128,6 +129,7 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.counts.elements = s.patches.patch_count();
   r.counts.dark_sides = s.lit_sides.dark_sides;
   r.counts.clusters = s.solution.clusters;
+  r.counts.openings = s.openings;
   r.counts.links = s.solution.links;
   r.counts.points = s.lightmap.position.size();
   r.counts.sensors = s.sensor_E.size();

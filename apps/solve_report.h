@@ -22,7 +22,8 @@ struct Solved {
   VertexLightmap lightmap;
   Field sensor_E;
   std::optional<MeasuredError> error, error_sensors;
-  HierarchyDebug debug;  ///< empty unless asked for
+  HierarchyDebug debug;      ///< empty unless asked for
+  std::size_t openings = 0;  ///< through which the sky looks in
 };
 
 void fill_report(RunReport& report, const Scene& scene, const Solved& solved);

@@ -162,6 +162,7 @@ std::vector<Figure> repeatable_figures(const RunReport& r) {
   out.insert(out.end(), {{"counts.triangles", count(c.triangles)},
                          {"counts.elements", count(c.elements)},
                          {"counts.clusters", count(c.clusters)},
+                         {"counts.openings", count(c.openings)},
                          {"counts.links", count(c.links)},
                          {"counts.rays", count(c.rays)},
                          {"counts.points", count(c.points)},

@@ -28,6 +28,7 @@ struct RunReport {
     std::size_t elements = 0;    ///< sides that take part, or what they were halved into
     std::size_t dark_sides = 0;  ///< sides left out because no light can reach them
     std::size_t points = 0, clusters = 0, links = 0, sensors = 0;
+    std::size_t openings = 0;  ///< gaps through which the sky looks into a room
     unsigned long long rays = 0;
   } counts;
   struct Seconds {

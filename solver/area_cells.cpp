@@ -170,11 +170,10 @@ std::optional<AreaPlan> even_view(const AreaCells& cells, int grid, const LookAt
   const std::uint32_t count = AreaCells::count(grid);
   std::vector<Spectrum> values(count);
   look(cells.pilots(grid), values);
-  AreaPlan plan;
+  AreaPlan plan{.cells = {}, .whole = static_cast<std::uint16_t>(grid)};
   double low = luminous_mean(values[0]), high = low;
   for (std::uint32_t c = 0; c < count; ++c) {
     low = std::min(low, luminous_mean(values[c])), high = std::max(high, luminous_mean(values[c]));
-    plan.cells.push_back({static_cast<std::uint16_t>(grid), static_cast<std::uint16_t>(c)});
     plan.mean += values[c] / count;
   }
   return high - low <= kEven * high ? std::optional(std::move(plan)) : std::nullopt;
@@ -193,7 +192,7 @@ AreaPlan plan_area(const AreaCells& cells, const AreaBudget& budget, double othe
     const AreaPlan so_far = pilots.plan();
     if (edges.empty() || error < budget.tolerance * (luminous_mean(so_far.mean) + others)) return so_far;
     // Each would send four pilots, and four rays that count in the end.
-    if (pilots.spent() + so_far.cells.size() + 7 * edges.size() > budget.most_rays) return so_far;
+    if (pilots.spent() + so_far.size() + 7 * edges.size() > budget.most_rays) return so_far;
     pilots.divide(grid, std::move(edges), budget.most_rays);
   }
   return pilots.plan();

@@ -43,8 +43,14 @@ struct AreaCell {
 
 /// Cells that cover the unit square once, and the mean of what pilots found in them.
 struct AreaPlan {
-  std::vector<AreaCell> cells;
+  std::vector<AreaCell> cells;  ///< empty: all of one grid, `whole`; millions of plans are kept
+  std::uint16_t whole = 0;
   Spectrum mean{0.0};
+
+  std::size_t size() const { return cells.empty() ? AreaCells::count(whole) : cells.size(); }
+  AreaCell operator[](std::size_t k) const {
+    return cells.empty() ? AreaCell{whole, static_cast<std::uint16_t>(k)} : cells[k];
+  }
 };
 
 /// Sets the values of points of the unit square, any number of them.

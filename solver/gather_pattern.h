@@ -14,7 +14,7 @@ namespace clerestory {
 /// Strata of the unit square, and how many rays go through each: 2^least() where the view is even, up to 2^deepest()
 /// where a pilot sees its neighbours differ.
 struct RayBudget {
-  int grid = 16;         ///< grid x grid strata, a power of 2, at least 4
+  int grid = 16;         ///< grid x grid strata, a power of 2, at least 8
   int rays = 256;        ///< where the view is even: grid x grid x a power of 2
   int most_rays = 2048;  ///< about so many where it is not; no more than `rays`: no pilot
 

@@ -193,8 +193,8 @@ std::vector<Spectrum> pilot_values(const View& view, const Strata<Value>& strata
   return found;
 }
 
-/// More rays where neighbours differ. wraps: the last column of the grid is a neighbour of the first.
-RayShares shares_by(const std::vector<Spectrum>& found, const RayBudget& budget, bool wraps) {
+/// More rays where neighbours differ; the last column of the grid is a neighbour of the first.
+RayShares shares_by(const std::vector<Spectrum>& found, const RayBudget& budget) {
   const int g = budget.grid;
   std::vector<double> pilot(found.size());
   std::ranges::transform(found, pilot.begin(), [](const Spectrum& x) { return luminous_mean(x); });
@@ -206,7 +206,7 @@ RayShares shares_by(const std::vector<Spectrum>& found, const RayBudget& budget,
       double low = pilot[cell], high = low;
       for (int di = -1; di <= 1; ++di)
         for (int dj = -1; dj <= 1; ++dj) {
-          if (i + di < 0 || i + di >= g || (!wraps && (j + dj < 0 || j + dj >= g))) continue;
+          if (i + di < 0 || i + di >= g) continue;
           const double near = pilot[static_cast<std::size_t>(budget.stratum(i + di, (j + dj + g) % g))];
           low = std::min(low, near), high = std::max(high, near);
         }
@@ -260,24 +260,23 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
   std::array<std::array<float, 2>, 16> points;
   std::array<Spectrum, 16> values;
   std::array<PolygonView::Sight, 16> sights;
-  for (std::size_t first = 0; first < plan.cells.size(); first += 16) {
-    const std::size_t count = std::min<std::size_t>(16, plan.cells.size() - first);
+  for (std::size_t first = 0; first < plan.size(); first += 16) {
+    const std::size_t count = std::min<std::size_t>(16, plan.size() - first);
     for (std::size_t k = 0; k < count; ++k) {
-      const AreaCell& cell = plan.cells[first + k];
+      const AreaCell cell = plan[first + k];
       points[k] = cells.points(cell.grid)[cell.number];
     }
     view.look(std::span(points).first(count), std::span(values).first(count), sights);
     double last = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [direction, per_share] = sights[k];
-      const Spectrum E =
-          (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan.cells[first + k].share());
+      const Spectrum E = (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan[first + k].share());
       sum.E += E;
       if (k % 2 == 1) sum.noise += (luminous_mean(E) - last) * (luminous_mean(E) - last);
       last = luminous_mean(E);
     }
   }
-  rays += plan.cells.size();
+  rays += plan.size();
   return sum;
 }
 
@@ -366,7 +365,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;
   if (sky == SkyInView::edge) {
     const View view(light, p, frame, lamp_rays(light, pattern, plan), plan);
-    plan.bundle = shares_by(pilot_values(view, bundle, kNobody, bundle_sight(frame), rays), bundle.budget(), true);
+    plan.bundle = shares_by(pilot_values(view, bundle, kNobody, bundle_sight(frame), rays), bundle.budget());
   } else if (sky == SkyInView::all) {  // changes slowly all over: half of the surplus, evenly
     const int rays_each = (bundle.budget().rays + bundle.budget().most_rays) / 2 / bundle.budget().strata();
     plan.bundle.assign(static_cast<std::size_t>(bundle.budget().strata()),
@@ -383,6 +382,8 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   Sum sum = integrate(
       view, pattern.bundle(), plan.bundle, kNobody, bundle_sight(frame), [](const Vec3&, double) { return 1.0; }, rays);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
+    // A plan may come from the other side of the area's plane: from there no ray belongs to it.
+    if (!(dot(p - area.centre, area.normal) > 0)) return;
     const PolygonView polygon(p, n, area.triangles, area.corners);
     if (!(polygon.solid_angle() > 0)) return;
     const Sum found = from_area({view, polygon, owner}, area_plan, pattern.area_cells(), area, p, n, rays);

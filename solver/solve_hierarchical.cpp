@@ -113,6 +113,7 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
 void correct_flux(const HierarchicalSolution& coarse, const Field& E, const ElementMesh& mesh, VertexField& field) {
   constexpr double kMost = 0.01;
   if (!field.complete || coarse.small_lights.value.empty()) return;
+  if (std::find(field.known.begin(), field.known.end(), false) != field.known.end()) return;
   const Field rest = without_small_lights(field);
   const Field on_leaves = leaf_irradiance(mesh, rest);
   const std::vector<std::uint32_t> leaves = mesh.leaves();

@@ -187,7 +187,8 @@ std::optional<Solved> solve_scene(const Scene& scene, Settings settings, const S
                 mean_over_planes(sensors, at_planes.E),
                 error,
                 error_sensors,
-                std::move(debug)};
+                std::move(debug),
+                lights.openings.size()};
 }
 
 /// Met for sure: the measured error and what is uncertain about it.

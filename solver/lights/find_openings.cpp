@@ -20,6 +20,8 @@ constexpr double kSeesSky = 0.1;           ///< share of the rays out that meet 
 constexpr double kIndoors = 0.2;           ///< most of the rays in that do
 constexpr double kWideOpen = 0.5;          ///< and those that do so mostly are preferred
 constexpr double kNew = 0.1;               ///< of the rays out, those that see sky which no other opening shows
+constexpr std::size_t kMostCorners = 256;
+constexpr std::size_t kMostCandidates = 5000;  ///< good ones, the best
 constexpr std::size_t kMostTriangles = 2'000'000, kMostOpenings = 500;
 
 struct SkySeen {
@@ -85,6 +87,7 @@ class Judge {
 /// No opening when it has no area.
 LightArea opening_across(const Gap& gap) {
   LightArea o;
+  if (gap.corners.size() > kMostCorners) return o;
   const Vec3 area = vector_area(gap.corners);
   o.area = length(area);
   if (!(o.area > 0)) return o;
@@ -122,6 +125,7 @@ std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& ra
     if ((a.sky > kWideOpen) != (b.sky > kWideOpen)) return a.sky > b.sky;
     return a.opening.area > b.opening.area;
   });
+  if (candidates.size() > kMostCandidates) candidates.erase(candidates.begin() + kMostCandidates, candidates.end());
   std::vector<LightArea> openings;
   for (std::size_t k = 0; k < candidates.size() && openings.size() < kMostOpenings; ++k)
     if (judge.shows_more(candidates[k].opening, openings, stream_key(kGapRays + 1, k)))

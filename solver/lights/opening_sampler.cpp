@@ -32,15 +32,11 @@ OpeningSampler::Sample OpeningSampler::sample(const Vec3& p, const Vec3& n, doub
   const LightTree::Choice choice = tree_.choose(p, n, pick);
   if (!(choice.probability > 0)) return {};
   const LightArea& opening = problem_.lights.openings[choice.light];
+  if (!(dot(p - opening.centre, opening.normal) > 0)) return {};
   const PolygonView polygon(p, n, opening.triangles, opening.corners);
   if (!(polygon.solid_angle() > 0)) return {};
   const auto [direction, per_share] = polygon.look(u, v);
-  return {direction, per_share / choice.probability, choice.probability / polygon.solid_angle(),
-          preference(p, n, direction, choice.light)};
-}
-
-double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d) const {
-  return preference(p, n, d, kNoOpening);
+  return {direction, per_share / choice.probability, choice.probability / polygon.solid_angle(), choice.light};
 }
 
 double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d, std::uint32_t but) const {

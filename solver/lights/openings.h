@@ -14,7 +14,7 @@ double way_out(const LightArea& opening, const Vec3& p, const Vec3& d);
 
 inline constexpr std::uint32_t kNoOpening = 0xffffffff;
 
-/// The first of those named by `numbers` that the ray passes before it meets a surface at `distance`, and that its
+/// The first of `numbers`, in their order, that the ray passes before it meets a surface at `distance`, and that its
 /// light therefore belongs to; kNoOpening: to none.
 std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
                             const Vec3& d, double distance);

@@ -18,6 +18,9 @@ constexpr double kSamePlane = 1e-4;         ///< sine of the angle between norma
 constexpr double kStraight = 1e-4;          ///< sine of the angle between edges that continue each other
 constexpr std::size_t kMostEdges = 20'000;  ///< rims that are tried, the longest
 constexpr std::size_t kMostPlanes = 3000;   ///< surfaces that are looked for in each other's planes, those of most rim
+constexpr std::size_t kMostSteps = 1000;    ///< around one loop
+constexpr std::size_t kMostAtVertex = 32;   ///< free edges at one vertex that are walked along
+constexpr std::size_t kMostOfPlane = 5000;  ///< rims of a plane, else it is not searched for strips
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// An edge of a plane surface beyond which its plane goes on as air; the surface lies to the left of a -> b.
@@ -193,7 +196,8 @@ class LoopFinder {
       const std::uint32_t v = at_vertex_[first].first;
       std::size_t last = first;
       while (last < at_vertex_.size() && at_vertex_[last].first == v) ++last;
-      for (std::size_t i = first; i < last; ++i)
+      const std::size_t some = std::min(last, first + kMostAtVertex);
+      for (std::size_t i = first; i < some; ++i)
         for (std::size_t j = first; j < i; ++j) walk(v, at_vertex_[i].second, at_vertex_[j].second, gaps);
       first = last;
     }
@@ -214,7 +218,9 @@ class LoopFinder {
     if (length(normal) < 0.01) return;
     const Vec3 n = normalized(normal);
     Chain chain{{v}, true};
-    for (std::uint32_t at = other_end(out, v), edge = out; at != v && steps_left_ > 0; --steps_left_) {
+    std::uint32_t at = other_end(out, v);
+    for (std::uint32_t edge = out; at != v; --steps_left_) {
+      if (steps_left_ == 0 || chain.vertex.size() > kMostSteps) return;  // a circle that v is not part of
       // A loop is met at each of its corners: the smallest may start it.
       if (at < v && is_corner(at)) return;
       chain.vertex.push_back(at);
@@ -341,7 +347,7 @@ std::vector<Gap> find_gaps(const PatchSet& patches, const RayScene& rays) {
       for (std::size_t k = 0; k + (chain.closed ? 0 : 1) < corners.size(); ++k) {
         const Segment edge{corners[k], corners[(k + 1) % corners.size()]};
         plane.edges.push_back(edge);
-        if (!is_hole) tries.push_back({planes.size(), edge});
+        if (!is_hole && sheet.rims.size() <= kMostOfPlane) tries.push_back({planes.size(), edge});
       }
       if (is_hole) gaps.push_back({std::move(corners), true});
     }

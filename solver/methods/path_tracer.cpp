@@ -53,7 +53,7 @@ Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n
   const RayScene& scene = light.problem.rays;
   const Spectrum passes = scene.transmittance(p, p + s.direction * (4 * scene.diameter()));
   if (passes.is_black()) return passes;
-  const double all = s.preference + s.others + cos_p / std::numbers::pi;
+  const double all = s.preference + light.openings.preference(p, n, s.direction, s.opening) + cos_p / std::numbers::pi;
   return light.sky(s.direction) * passes * (cos_p * s.per_choice * s.preference / all);
 }
 

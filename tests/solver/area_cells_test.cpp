@@ -47,11 +47,12 @@ Estimate estimate(const AreaBudget& budget, std::uint64_t seed, const Value& val
     e.rays += points.size();
     for (std::size_t k = 0; k < points.size(); ++k) values[k] = Spectrum(value(points[k][0], points[k][1]));
   });
-  for (const AreaCell& cell : e.plan.cells) {
+  for (std::size_t k = 0; k < e.plan.size(); ++k) {
+    const AreaCell cell = e.plan[k];
     const auto [u, v] = cells.points(cell.grid)[cell.number];
     e.value += cell.share() * value(u, v);
   }
-  e.rays += e.plan.cells.size();
+  e.rays += e.plan.size();
   return e;
 }
 

@@ -149,6 +149,23 @@ TEST(GatherPoint, SeesASlitOfOneMillimetreFromDeepInARoomExactly) {
   EXPECT_NEAR(paths.E[0], exact, 4 * paths.std_error[0] + 1e-3 * exact);
 }
 
+TEST(GatherPoint, APlanFromIndoorsServesAPointOutdoors) {
+  // As along a floor that runs out through a door: halves of an element take the plan of a corner.
+  SceneMaker m;
+  add_sheets(m, false, true);
+  Found found(m);
+  const Problem problem{found.patches, found.rays, found.lights};
+  const Field dark(problem.patches.patch_count(), 1);
+  const Illumination light(problem, dark);
+  const GatherPattern pattern({}, 1);
+  const Vec3 inside = Vec3{2, 1, 0.5} - problem.patches.origin, outside = Vec3{2, -1, 0.5} - problem.patches.origin;
+  unsigned long long rays = 0;
+  const GatherPlan plan = plan_gather(light, inside, {0, 0, 1}, pattern, rays);
+  ASSERT_EQ(plan.openings.size(), 1u);
+  const double E = gather_point(light, outside, {0, 0, 1}, pattern, plan, rays).E[0];
+  EXPECT_NEAR(E / gather_point(light, outside, {0, 0, 1}, pattern, rays).E[0], 1, 0.02);  // 1,024 rays and more
+}
+
 TEST(DirectLight, ThroughOpeningsAndBundlesTogetherIsTheSkysLight) {
   // A window of 2 x 1 m; the bundle alone, with many rays, is the judge.
   SceneMaker m;

@@ -32,7 +32,7 @@ struct SensorSet {
 };
 
 /// Planes around the axis of a cylindrical sensor, see solver/sensor_planes.h.
-inline constexpr std::size_t kCylinderPlanes = 17;
+inline constexpr std::size_t kCylinderPlanes = 21;
 
 /// How many planes a sensor of this kind takes.
 constexpr std::size_t planes_a_sensor(SensorKind kind) { return kind == SensorKind::cylindrical ? kCylinderPlanes : 1; }

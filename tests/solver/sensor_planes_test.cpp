@@ -20,12 +20,12 @@ double mean_of_beam(const SensorPlanes& cylinder, const Vec3& d) {
 }
 
 TEST(SensorPlanes, OfACylinderGiveABeamItsSineOverPiFromAnySide) {
-  // Exact: 1/pi sin(theta). 17 planes err by up to 2 / (34^2 - 1), and somewhere by nearly as much.
-  const double bound = 2 / (34.0 * 34.0 - 1);
+  // Exact: 1/pi sin(theta). N evenly spaced cosines, N odd, add up to cot(pi / 2N) / 2 where one of them is 0: the worst.
+  const double x = kPi / (2 * 21), bound = 1 - x / std::tan(x);
   for (const Vec3& axis : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{0.6, 0, 0.8}}) {
     const SensorSet set = one(SensorKind::cylindrical, axis);
     const SensorPlanes cylinder = planes_of({&set, 1});
-    ASSERT_EQ(cylinder.planes.size(), 17u);
+    ASSERT_EQ(cylinder.planes.size(), 21u);
     const Frame frame(axis);
     double worst = 0;
     for (const double theta : {0.2, 1.0, kPi / 2, 2.5})
@@ -37,6 +37,7 @@ TEST(SensorPlanes, OfACylinderGiveABeamItsSineOverPiFromAnySide) {
       }
     EXPECT_LE(worst, bound * (1 + 1e-9));
     EXPECT_GT(worst, 0.8 * bound);
+    EXPECT_LT(worst, 0.002);
   }
 }
 
@@ -55,25 +56,25 @@ TEST(SensorPlanes, AreMeanedSensorBySensorInEachChannel) {
   const SensorSet sets[] = {plane, cylinder, plane};
   const SensorPlanes sensors = planes_of(sets);
   ASSERT_EQ(sensors.sensor_count(), 3u);
-  ASSERT_EQ(sensors.planes.size(), 19u);
+  ASSERT_EQ(sensors.planes.size(), 23u);
   EXPECT_EQ(sensors.planes[0].normal, (Vec3{0, 0, 1}));
-  EXPECT_EQ(sensors.planes[18].normal, (Vec3{0, 0, 1}));
-  Field E(19, 3);
-  for (std::size_t i = 0; i < 19; ++i) E.set(i, {double(i), 10.0 * double(i), 5});
+  EXPECT_EQ(sensors.planes[22].normal, (Vec3{0, 0, 1}));
+  Field E(23, 3);
+  for (std::size_t i = 0; i < 23; ++i) E.set(i, {double(i), 10.0 * double(i), 5});
   const Field mean = mean_over_planes(sensors, E);
   ASSERT_EQ(mean.size(), 3u);
   EXPECT_EQ(mean[0], Spectrum(0, 0, 5));
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean.at(1, k), Spectrum(9, 90, 5)[k], 1e-12);  // the mean of 1 to 17
-  EXPECT_EQ(mean[2], Spectrum(18, 180, 5));
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean.at(1, k), Spectrum(11, 110, 5)[k], 1e-12);  // the mean of 1 to 21
+  EXPECT_EQ(mean[2], Spectrum(22, 220, 5));
 }
 
 TEST(SensorPlanes, LeadBackToTheSensorsThatHaveMostOfThem) {
   const SensorSet sets[] = {one(SensorKind::planar, {0, 0, 1}), one(SensorKind::cylindrical, {0, 0, 1}),
                             one(SensorKind::planar, {0, 0, 1})};
   const SensorPlanes sensors = planes_of(sets);
-  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{0, 1, 2, 3, 18}), (std::vector<std::size_t>{0, 2}));
-  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8}), std::vector<std::size_t>{});
-  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8, 9}), std::vector<std::size_t>{1});
+  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{0, 1, 2, 3, 22}), (std::vector<std::size_t>{0, 2}));
+  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), std::vector<std::size_t>{});
+  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), std::vector<std::size_t>{1});
   EXPECT_EQ(sensors_of(sensors, {}), std::vector<std::size_t>{});
 }
 

@@ -199,7 +199,7 @@ TEST_F(SceneFile, SensorsHaveTheNormalsOfTheirKind) {
 
 TEST_F(SceneFile, KeysThatDoNotGoWithAKindOfSensorAreRefused) {
   folder_.write("points.csv", "0,0,1,0,-1,0\n0,0,1,0,0.6,0.8\n");
-  const auto of = [&](const std::string& says) { return refusal_with(R"("sensors": [ { )" + says + " } ])"); };
+  const auto of = [&](const std::string& says) { return refusal_with(R"("sensors": [ { )" + says + " } ]"); };
   const std::string grid = R"(, "origin": [0, 0, 1], "u": [1, 0, 0], "v": [0, 1, 0], "spacing": 0.1)";
   EXPECT_EQ(of(R"("kind": "horizontal", "normal": [0, 0, 1])" + grid),
             "s.json: sensors[0].normal does not go with \"kind\": \"horizontal\", which faces up; leave it out");
@@ -437,7 +437,7 @@ TEST_F(SceneFile, NestingBombsAndSensorBombsAreRefusedAtOnce) {
   EXPECT_EQ(refusal_with(R"("sensors": [ { "kind": "cylindrical", "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0],
                            "spacing": 0.001 } ])"),
             "s.json: sensors[0].spacing = 0.001 makes 1001 x 1001 points; at most 10000000 in one scene, and each "
-            "cylindrical one counts as 17");
+            "cylindrical one counts as 21");
   EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 0 } ])"),
             "s.json: sensors[0].spacing = 0 is outside (0, 1e12]; it is in metres.");
 }

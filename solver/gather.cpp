@@ -12,26 +12,30 @@ namespace {
 
 enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
 
-GatherQuality quality(const SolveOptions& options, int rays, int most_rays, int lamp_rays, int sun_rays) {
-  const int more = 1 << options.tighten;
-  return {.rays = rays * more, .most_rays = most_rays * more, .lamp_rays = lamp_rays, .sun_rays = sun_rays};
+GatherQuality quality(const SolveOptions& options, RayBudget bundle, AreaBudget area, int lamp_rays, int sun_rays) {
+  for (int* rays : {&bundle.rays, &bundle.most_rays}) *rays <<= options.tighten;
+  area.most_rays <<= options.tighten;
+  return {bundle, area, lamp_rays, sun_rays};
 }
 
 GatherQuality sensor_quality(const SolveOptions& options) {
   switch (options.accuracy) {
     case Accuracy::draft:
-      return quality(options, 256, 512, 64, 16);
+      return quality(options, {16, 256, 512}, {1, 3, 0.01, 512}, 64, 16);
     case Accuracy::standard:
-      return quality(options, 256, 2048, 256, 32);
+      return quality(options, {16, 256, 2048}, {2, 6, 0.003, 8192}, 256, 32);
     case Accuracy::fine:
-      return quality(options, 1024, 8192, 512, 64);
+      return quality(options, {16, 1024, 8192}, {2, 6, 0.0015, 16384}, 512, 64);
   }
   return {};
 }
 
 /// Paths meet reflected light on their way; a gather looks it up, and bright patches are lamps to it.
 Illumination illumination(const Problem& problem, const Solution& solution) {
-  return solution.std_error.value.empty() ? Illumination(problem, solution.B) : Illumination(problem);
+  if (!solution.std_error.value.empty()) return Illumination(problem);
+  Illumination light(problem, solution.B);
+  light.look_at_panels();
+  return light;
 }
 
 struct Place {
@@ -69,15 +73,12 @@ unsigned long long gather(const Illumination& light, const Solution& solution, s
 
 GatherQuality vertex_quality(const SolveOptions& options) {
   switch (options.accuracy) {
-    case Accuracy::draft: {
-      GatherQuality coarse = quality(options, 64, 64, 32, 8);
-      coarse.grid = 8;
-      return coarse;
-    }
+    case Accuracy::draft:
+      return quality(options, {8, 64, 64}, {0, 1, 0.02, 128}, 32, 8);
     case Accuracy::standard:
-      return quality(options, 256, 768, 128, 16);
+      return quality(options, {16, 256, 768}, {1, 3, 0.01, 512}, 128, 16);
     case Accuracy::fine:
-      return quality(options, 512, 2048, 128, 32);
+      return quality(options, {16, 512, 2048}, {1, 4, 0.005, 2048}, 128, 32);
   }
   return {};
 }

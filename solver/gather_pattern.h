@@ -1,60 +1,89 @@
 #pragma once
-// The directions of a final gather, made once for all points.
+// Where the rays of a final gather go, made once for all points.
 
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "solver/area_cells.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
 
-/// How many rays a point gets. Defaults suit a sensor.
-struct GatherQuality {
-  int grid = 16;         ///< the hemisphere is grid x grid strata, a power of 2, at least 4
-  int rays = 1024;       ///< where the view is even: grid x grid x a power of 2
-  int most_rays = 4096;  ///< about so many where a pilot sees its neighbours differ; no more than `rays`: no pilot
-  int lamp_rays = 128;   ///< shadow rays to bright patches, a multiple of 16
-  int sun_rays = 16;     ///< to each sun
+/// Strata of the unit square, and how many rays go through each: 2^least() where the view is even, up to 2^deepest()
+/// where a pilot sees its neighbours differ.
+struct RayBudget {
+  int grid = 16;         ///< grid x grid strata, a power of 2, at least 4
+  int rays = 256;        ///< where the view is even: grid x grid x a power of 2
+  int most_rays = 2048;  ///< about so many where it is not; no more than `rays`: no pilot
+
+  int strata() const { return grid * grid; }
+  int least() const;
+  int deepest() const;
+  /// Sixteen strata in a row lie together, so that they make a coherent packet.
+  int stratum(int i, int j) const {
+    const int tiles = grid / 4;
+    return (i / 4 * tiles + j / 4) * 16 + i % 4 * 4 + j % 4;
+  }
+  int stratum_of(double u, double v) const { return stratum(static_cast<int>(u * grid), static_cast<int>(v * grid)); }
 };
 
-/// Strata of the hemisphere and the rays in them. All points use the same directions around their normal: what error is
-/// left then varies over a surface as smoothly as the light, without grain, and directions cost nothing to make.
-///
-/// The rays of a stratum are a sequence: its first 2^k are themselves well spread, all strata together, as the points
-/// of one Owen-scrambled Sobol sequence are. Pilot rays are another sequence.
+/// How many rays a point gets. Defaults suit a sensor.
+struct GatherQuality {
+  RayBudget bundle{16, 1024, 4096};  ///< over the hemisphere
+  AreaBudget area{};                 ///< to each opening and each panel that matters
+  int lamp_rays = 128;               ///< shadow rays to bright patches, a multiple of 16
+  int sun_rays = 16;                 ///< to each sun
+};
+
+/// Points of the unit square by stratum, or what they are mapped to. The points of a stratum are a sequence: its first
+/// 2^k are themselves well spread, all strata together, as the points of one Owen-scrambled Sobol sequence are. Pilot
+/// points are another sequence.
+template <class Value>
+class Strata {
+ public:
+  Strata() = default;
+  /// map  from (u, v) to Value.
+  Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_key, Value (*map)(double u, double v));
+
+  const RayBudget& budget() const { return budget_; }
+  /// The first 2^deepest points of a stratum.
+  std::span<const Value> points(int stratum) const {
+    return std::span(fresh_).subspan(static_cast<std::size_t>(stratum) << deepest_, std::size_t{1} << deepest_);
+  }
+  const Value& pilot(int stratum) const { return pilot_[static_cast<std::size_t>(stratum)]; }
+
+ private:
+  RayBudget budget_;
+  int deepest_ = 0;
+  std::vector<Value> fresh_, pilot_;
+};
+
+/// All points use the same directions around their normal: what error is left then varies over a surface as smoothly as
+/// the light, without grain, and directions cost nothing to make.
 class GatherPattern {
  public:
   GatherPattern(const GatherQuality& quality, std::uint64_t seed);
 
   const GatherQuality& quality() const { return quality_; }
-  int strata() const { return quality_.grid * quality_.grid; }
-  /// A stratum that the view asks for gets no more than 2^deepest() rays, one that it does not 2^least().
-  int least() const { return least_; }
-  int deepest() const { return deepest_; }
-
-  /// First 2^deepest directions of a stratum in the frame of the normal (z), cosine-distributed.
-  std::span<const std::array<float, 3>> directions(int stratum) const {
-    return std::span(fresh_).subspan(static_cast<std::size_t>(stratum) << deepest_, std::size_t{1} << deepest_);
-  }
-  const std::array<float, 3>& pilot(int stratum) const { return pilot_[static_cast<std::size_t>(stratum)]; }
+  /// Directions in the frame of the normal (z), cosine-distributed.
+  const Strata<std::array<float, 3>>& bundle() const { return bundle_; }
+  const AreaCells& area_cells() const { return area_cells_; }
   /// Which light, and where on it, for each lamp ray.
   const std::vector<std::array<double, 3>>& lamp_choices() const { return lamp_choices_; }
+  /// The same for pilot rays.
+  static constexpr std::uint32_t kLampPilots = 64;
+  const std::vector<std::array<double, 3>>& lamp_pilots() const { return lamp_pilots_; }
   std::uint64_t sun_key() const { return sun_key_; }
 
   int stratum_of(const Frame& frame, const Vec3& direction) const;
-  /// Sixteen strata in a row lie together, so that they make a coherent packet.
-  int stratum(int i, int j) const {
-    const int tiles = quality_.grid / 4;
-    return (i / 4 * tiles + j / 4) * 16 + i % 4 * 4 + j % 4;
-  }
 
  private:
   GatherQuality quality_;
-  int least_ = 0, deepest_ = 0;
-  std::vector<std::array<float, 3>> fresh_, pilot_;
-  std::vector<std::array<double, 3>> lamp_choices_;
+  Strata<std::array<float, 3>> bundle_;
+  AreaCells area_cells_;
+  std::vector<std::array<double, 3>> lamp_choices_, lamp_pilots_;
   std::uint64_t sun_key_;
 };
 

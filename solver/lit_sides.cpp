@@ -4,6 +4,8 @@
 #include <array>
 
 #include "solver/lights/light_sampler.h"
+#include "solver/lights/openings.h"
+#include "solver/lights/panels.h"
 #include "solver/lights/point_lights.h"
 #include "solver/lights/sun.h"
 #include "solver/model/disjoint_sets.h"
@@ -17,7 +19,7 @@ namespace {
 constexpr std::size_t kBlock = 1 << 14;   ///< patches between two looks at what is known by then
 constexpr std::size_t kLampSamples = 64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
 
-enum StreamKind : std::uint64_t { kSideRays = 0x31, kLampRays = 0x32, kLampSearch = 0x33 };
+enum StreamKind : std::uint64_t { kSideRays = 0x31, kLampRays = 0x32, kLampSearch = 0x33, kOpeningRays = 0x34 };
 
 /// Patches that see each other, and what is known of each such space.
 class Spaces {
@@ -160,6 +162,20 @@ void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) 
     if (patch.valid()) spaces.light(patch);
 }
 
+/// Sides that rays through the openings meet: of a room behind a slit no ray of its own may find it.
+void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
+  constexpr std::uint32_t kRays = 64;
+  for (std::size_t k = 0; k < problem.lights.openings.size(); ++k) {
+    const LightArea& opening = problem.lights.openings[k];
+    const std::uint64_t key = stream_key(seed, kOpeningRays, k);
+    for (std::uint32_t r = 0; r < kRays; ++r) {
+      const Ray ray = ray_through(opening, opening.normal, key, r, problem.rays.lift());
+      const Hit hit = problem.rays.first_hit(problem.patches, ray);
+      if (hit.patch.valid()) spaces.light(hit.patch);
+    }
+  }
+}
+
 /// Lets the given patches look for luminaires and for the patches that glow.
 void search_lamps(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
                   std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
@@ -189,6 +205,7 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   for (std::size_t i = 0; i < n; ++i)
     for (const PatchSet::Behind& other : patches.patches_behind(i)) spaces.see_each_other(patches, i, other.patch);
   light_by_lamps(problem, seed, spaces);
+  light_by_openings(problem, seed, spaces);
 
   // Emitters first: most patches of a large scene are then met by a ray before it is their turn, and send none, or meet
   // a space that takes part with their first ray.
@@ -240,13 +257,22 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   for (std::size_t i = 0; i < n; ++i)
     if (!patches.M[i].is_black() && !spaces.only_material(i).valid()) lights_others[patches.material(PatchId{i})] = 1;
 
+  // Of a wide lamp in the open only the part nearby may have found what it lights.
+  std::vector<std::uint32_t> emitting;
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (!patches.M[i].is_black()) emitting.push_back(i);
+  std::vector<char> goes_on(n, 0);
+  for (const auto& group : plane_groups(patches, emitting))
+    if (std::ranges::any_of(group, [&](std::uint32_t i) { return !spaces.only_material(i).valid(); }))
+      for (const std::uint32_t i : group) goes_on[i] = 1;
+
   LitSides result;
   result.wanted.assign(2 * patches.triangle_count(), false);
   for (std::size_t i = 0; i < n; ++i) {
     const bool lit = spaces.is_lit(i), glows = spaces.glows(i);
     const MaterialId only = spaces.only_material(i);
     const bool inside_lamp = !lit && glows && only.valid() && lights_others[only];
-    if (lit || (glows && !inside_lamp))
+    if (lit || goes_on[i] || (glows && !inside_lamp))
       result.wanted[2 * patches.triangle[i] + patches.side[i]] = true;
     else
       ++(inside_lamp ? result.lamp_interiors : result.dark_sides);

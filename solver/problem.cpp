@@ -1,6 +1,14 @@
 #include "solver/problem.h"
 
+#include "solver/lights/openings.h"
+
 namespace clerestory {
+
+Lights local_lights(const Lights& lights, const PatchSet& patches, const RayScene& rays) {
+  Lights local = with_mirror_images(to_local_frame(lights, patches.origin), rays);
+  local.openings = find_openings(patches, rays, local);
+  return local;
+}
 
 Lights to_local_frame(const Lights& lights, const Vec3& origin) {
   Lights local = lights;

@@ -14,6 +14,10 @@ struct Problem {
   const Lights& lights;
 };
 
+/// The lights as all that follows wants them: in the local frame of the patches, with an image behind each mirror, and
+/// with the openings through which the sky looks in.
+Lights local_lights(const Lights& lights, const PatchSet& patches, const RayScene& rays);
+
 /// Lights moved into the local frame of the patches.
 Lights to_local_frame(const Lights& lights, const Vec3& origin);
 

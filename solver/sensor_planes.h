@@ -22,8 +22,8 @@ struct SensorPlanes {
 ///   E_z = 1/(2 pi) * integral of E(phi) dphi = 1/pi * integral of L sin(theta) dOmega,   theta from the axis
 /// (EN 12464-1, EN 12665), here over kCylinderPlanes of them, evenly spaced.
 ///
-/// Their number N is odd: cos^+ has no odd harmonics but the first, so N planes are as good as 2 N. For a single point
-/// light they err by no more than 1 - x / tan(x), x = pi / (2 N): 0.19 %; for a sky or walls by nothing to speak of.
+/// Their number N is odd: cos^+ has no odd harmonics but the first, so N planes err like 2 N, for a single point light
+/// by up to 1 - x / tan(x) = 0.19 %, x = pi / (2 N), for light from a sky or walls by nothing to speak of.
 SensorPlanes planes_of(std::span<const SensorSet> sets);
 
 /// The mean over each sensor's planes, S x channels, of the irradiance E on all planes.

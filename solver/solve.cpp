@@ -79,8 +79,9 @@ Solution solve(const Problem& problem, const SolveOptions& options, const Monito
                                        .rays_per_patch = by_accuracy(options.accuracy, 64, 256, 1024) * 1.0 * more,
                                        .seed = options.seed};
       Solution solution = shoot(problem, direct, closure(), shoot_options, monitor);
-      const GatherQuality quality{
-          .rays = 256, .most_rays = by_accuracy(options.accuracy, 256, 512, 1024), .lamp_rays = 64};
+      const GatherQuality quality{.bundle = {16, 256, by_accuracy(options.accuracy, 256, 512, 1024)},
+                                  .area = {1, 3, 0.01, 512},
+                                  .lamp_rays = 64};
       const std::size_t gathered = gather_noisy_patches(problem, solution, kFewestRays, quality, options.seed, monitor);
       solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
       return solution;

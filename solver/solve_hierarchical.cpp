@@ -76,12 +76,19 @@ SmallLights small_lights(const ElementMesh& mesh, std::span<const std::uint32_t>
   return found;
 }
 
+Field without_small_lights(const VertexField& field) {
+  Field rest = field.E;
+  for (std::size_t k = 0; k < rest.value.size(); ++k) rest.value[k] -= field.small_lights.value[k];
+  return rest;
+}
+
 /// Irradiance of the leaves from that at their vertices; where sun or lamp light varies among the corners of what was
 /// one element for transport, their mean of it is put right by the exact flux that the transport found there.
 Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
                       const HierarchicalSolution& coarse, const VertexField& field) {
   Field E = leaf_irradiance(mesh, field.E);
   if (coarse.small_lights.value.empty()) return E;
+  const Field rest = leaf_irradiance(mesh, without_small_lights(field));
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   std::size_t begin = 0;
   for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
@@ -89,18 +96,37 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
     const SmallLights gathered = small_lights(mesh, own, field);
     for (std::size_t k = 0; k < own.size() && gathered.varies; ++k)
       for (int c = 0; c < E.channels; ++c) {
-        double lamps = 0, rest = 0;
-        for (const std::uint32_t p : mesh[own[k]].point) {
-          lamps += field.small_lights.at(p, c) / 3;
-          rest += (field.E.at(p, c) - field.small_lights.at(p, c)) / 3;
-        }
+        double lamps = 0;
+        for (const std::uint32_t p : mesh[own[k]].point) lamps += field.small_lights.at(p, c) / 3;
         // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
         const double exact = coarse.small_lights.at(j, c), mean = gathered.mean[c];
-        E.at(begin + k, c) = rest + (mean > 0 ? lamps * exact / mean : exact);
+        E.at(begin + k, c) = rest.at(begin + k, c) + (mean > 0 ? lamps * exact / mean : exact);
       }
     begin += own.size();
   }
   return E;
+}
+
+/// Scales what the field has of all light but that of sun and lamps, so that its flux is that of the transport: the
+/// vertices share their directions, and so a small error, while the bundles of the elements are independent of each
+/// other. What differs by more is no such error, and stays.
+void correct_flux(const HierarchicalSolution& coarse, const Field& E, const ElementMesh& mesh, VertexField& field) {
+  constexpr double kMost = 0.01;
+  if (!field.complete || coarse.small_lights.value.empty()) return;
+  const Field rest = without_small_lights(field);
+  const Field on_leaves = leaf_irradiance(mesh, rest);
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  for (int c = 0; c < rest.channels; ++c) {
+    double found = 0, exact = 0;
+    for (std::size_t j = 0; j < coarse.elements.patch_count(); ++j)
+      exact += coarse.elements.area[j] * (E.at(j, c) - coarse.small_lights.at(j, c));
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+      found += std::ldexp(mesh.patches().area[mesh[leaves[i]].patch], -mesh[leaves[i]].level) * on_leaves.at(i, c);
+    const double ratio = found > 0 ? exact / found : 1;
+    if (std::abs(ratio - 1) > kMost) continue;
+    for (std::size_t p = 0; p < rest.size(); ++p)
+      field.E.at(p, c) = field.small_lights.at(p, c) + ratio * rest.at(p, c);
+  }
 }
 
 /// Points not gathered take the mean of the elements around them, middles that of the ends they stand between.
@@ -167,6 +193,7 @@ ShownSolution solve_hierarchical(const Problem& problem, VertexLightmap map, dou
                          std::to_string(mesh.leaf_count()) + " shown on " +
                          std::to_string(mesh.points().position.size()) + " points");
   if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
+  correct_flux(coarse, solution.E, mesh, field);
   fill_unknown(mesh, transport_leaves, coarse.elements, solution.E, field);
   coarse.elements = {};  // a million of them are a third of a gigabyte
   solution.E = field_on_leaves(mesh, transport_leaves, coarse, field);

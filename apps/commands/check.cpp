@@ -101,7 +101,7 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   if (console.interrupted()) return kInterrupted;
   report.seconds.mesh = console.elapsed() - report.seconds.read;
   const RayScene rays(patches);
-  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  const Lights lights = local_lights(scene.lights, patches, rays);
   const Problem problem{patches, rays, lights};
   if (has_light(scene)) make_patches(patches, find_lit_sides(problem, settings.solve.seed).wanted);
   const SensorPlanes sensors = planes_of(scene.sensors);

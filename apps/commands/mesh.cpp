@@ -26,7 +26,7 @@ struct Arguments {
 LitSides sides_to_show(const Scene& scene, const PatchSet& patches, std::uint64_t seed) {
   if (!has_light(scene)) return {std::vector<bool>(2 * patches.triangle_count(), true)};
   const RayScene rays(patches);
-  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  const Lights lights = local_lights(scene.lights, patches, rays);
   return find_lit_sides({patches, rays, lights}, seed);
 }
 

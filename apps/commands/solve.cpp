@@ -82,6 +82,7 @@ std::size_t memory_after_reading(std::size_t limit, const MeshReport& repairs) {
 struct Prepared {
   PatchSet patches;
   MeshReport repairs;
+  Lights lights;
   LitSides lit_sides;
   VertexLightmap map;
 };
@@ -91,14 +92,14 @@ std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, st
                                 RunReport::Seconds& seconds, const Monitor& monitor) {
   Lap lap;
   MeshedScene meshed = build_patches(scene, settings.mesh, monitor);
-  Prepared p{std::move(meshed.patches), meshed.report, {}, {}};
+  Prepared p{std::move(meshed.patches), meshed.report, {}, {}, {}};
   p.patches.channels = settings.channels;
   lap.add_to(seconds.mesh);
   if (monitor.is_interrupted()) return {};
 
   rays.emplace(p.patches);
-  const Lights lights = to_local_frame(scene.lights, p.patches.origin);
-  p.lit_sides = find_lit_sides({p.patches, *rays, lights}, settings.solve.seed, monitor);
+  p.lights = local_lights(scene.lights, p.patches, *rays);
+  p.lit_sides = find_lit_sides({p.patches, *rays, p.lights}, settings.solve.seed, monitor);
   make_patches(p.patches, p.lit_sides.wanted);
   if (p.patches.patch_count() == 0)
     throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
@@ -144,8 +145,7 @@ std::optional<Solved> solve_scene(const Scene& scene, Settings settings, const S
   std::optional<RayScene> rays;
   std::optional<Prepared> prepared = prepare_to_fit(scene, settings, rays, seconds, console, monitor);
   if (!prepared) return {};
-  auto& [patches, repairs, lit_sides, lightmap] = *prepared;
-  const Lights lights = with_mirror_images(to_local_frame(scene.lights, patches.origin), *rays);
+  auto& [patches, repairs, lights, lit_sides, lightmap] = *prepared;
   const Problem problem{patches, *rays, lights};
   warn_about_places(problem, scene, sensors, console);
 

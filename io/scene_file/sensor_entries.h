@@ -14,7 +14,8 @@ namespace clerestory {
 /// those of the set's kind: up, horizontal, towards the camera; of cylinders the axis.
 ///
 /// folder  where the files of sensors are looked for.
-/// throws  InputError; also when all of them are more than kMaxSensors points, cylindrical ones counted by their planes.
+/// throws  InputError; also when all of them are more than kMaxSensors points, cylindrical ones counted by their
+/// planes.
 std::vector<SensorSet> read_sensor_entries(const Json& sensors, const std::string& file_name,
                                            const std::filesystem::path& folder);
 

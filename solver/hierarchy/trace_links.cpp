@@ -10,6 +10,7 @@
 #include "solver/hierarchy/bundle_net.h"
 #include "solver/hierarchy/gather_links.h"
 #include "solver/hierarchy/receivers.h"
+#include "solver/lights/openings.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -19,7 +20,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92;
+constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92, kPairPilot = 0x93;
 constexpr double kMostOwed = 0.1;         // of the limit for one link: a row may not drift by more while it is cut
 constexpr int kZones = 6, kSectors = 12;  // parts of the sphere
 constexpr std::size_t kParts = kZones * kSectors;
@@ -53,12 +54,12 @@ double shared_weight(double cos_p, double own, double other) {
 class Tracer {
  public:
   Tracer(const Illumination& light, const ElementTree& tree, const BundleNet& net, const NodeLight* nodes,
-         const Field& E, const LinkOptions& options)
+         const DirectLight& direct, const LinkOptions& options)
       : light_(light),
         tree_(tree),
         net_(net),
         nodes_(nodes),
-        E_(E),
+        direct_(direct),
         options_(options),
         patches_(light.problem.patches),
         rays_(static_cast<std::size_t>(options.bundle_rays)),
@@ -67,8 +68,9 @@ class Tracer {
 
   void add(const Receiver& receiver, LinkBlock& out, Transport& transport, std::span<std::uint32_t> neighbours) {
     look_at(receiver);
+    pairs_ = light_.lamps.has_emitters() && options_.lamp_rays > 0 && (light_.sky.dark() || sees_bright_patches());
     send_bundle(transport, neighbours);
-    if (light_.lamps.has_emitters() && options_.lamp_rays > 0) send_pairs();
+    if (pairs_) send_pairs();
     fill_row(transport);
     write(receiver, out);
   }
@@ -142,7 +144,6 @@ class Tracer {
 
   void send_bundle(Transport& transport, std::span<std::uint32_t> neighbours) {
     const int R = options_.bundle_rays;
-    const bool pairs = light_.lamps.has_emitters() && options_.lamp_rays > 0;
     const std::size_t n = members_.size();
     std::array<double, kMostMembers> share{}, all{}, arrive{}, escape{};
     std::array<Spectrum, kMostMembers> sky{};
@@ -157,10 +158,13 @@ class Tracer {
       if (n > 1) find_shares(d, std::span(share).first(n));
       if (hit.escaped()) {
         const Spectrum from_sky = light_.sky(hit.direction(rays_[k])) * std::numbers::pi * hit.transmittance;
-        for (std::size_t m = 0; m < n; ++m) sky[m] += from_sky * share[m], escape[m] += share[m] * passes;
+        for (std::size_t m = 0; m < n; ++m) {
+          escape[m] += share[m] * passes;
+          if (!is_looked_for(members_[m].patch, rays_[k], hit)) sky[m] += from_sky * share[m];
+        }
       } else if (hit.patch.valid()) {
         if (met < neighbours.size()) neighbours[met++] = hit.patch.value;
-        const bool bright = pairs && !hit.reflected && light_.lamps.is_explicit(hit.patch);
+        const bool bright = pairs_ && !hit.reflected && light_.lamps.is_explicit(hit.patch);
         double weight = 1.0 / R;
         if (bright) {
           const double cos_p = dot(from.normal, d) / std::numbers::pi;
@@ -184,9 +188,44 @@ class Tracer {
     }
   }
 
+  /// Whether direct light has looked for this ray's sky through an opening.
+  bool is_looked_for(std::uint32_t patch, const Ray& ray, const Hit& hit) const {
+    const auto openings = direct_.openings.of(patch);
+    return !openings.empty() &&
+           first_way_out(light_.problem.lights.openings, openings, ray.origin, ray.direction, hit.first) != kNoOpening;
+  }
+
+  /// One pair of a point of the receiver with one of a bright patch.
+  struct Pair {
+    Vec3 from, to, normal;
+    LightSample sample;
+  };
+  Pair pair(std::uint32_t number, std::uint64_t key) const {
+    // Place and choice of the source matter most: they share one sequence, and are stratified against each other.
+    const auto u = sobol4(number, key);
+    auto v = sobol4(number, mix_bits(key));
+    const Member& member = pick(v[1]);
+    const Vec3 from = point_on_triangle(member.corners, u[0], u[1]) + member.normal * light_.problem.rays.lift();
+    const LightSample s = light_.lamps.sample(from, member.normal, u[2], u[3], v[0], true);
+    return {from, s.density > 0 ? s.end : from, member.normal, s};
+  }
+
+  /// Under the sky bright patches mostly lie outdoors, and most receivers do not see them: a few pairs tell. Without
+  /// any that gets through, bright patches are left to the bundle.
+  bool sees_bright_patches() const {
+    SegmentPacket segments;
+    unsigned active = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+      const Pair p = pair(static_cast<std::uint32_t>(lane), mix_bits(key_ + kPairPilot));
+      segments.set(lane, p.from, p.to);
+      if (p.sample.density > 0) active |= 1u << lane;
+    }
+    return active && light_.problem.rays.visible16(segments, static_cast<std::uint16_t>(active));
+  }
+
   void send_pairs() {
     const Problem& problem = light_.problem;
-    const std::uint64_t key = mix_bits(key_ + kLampPairs), key_of_rest = mix_bits(key);
+    const std::uint64_t key = mix_bits(key_ + kLampPairs);
     for (int first = 0; first < options_.lamp_rays; first += 16) {
       SegmentPacket segments;
       std::array<Vec3, 16> from, to, direction;
@@ -195,20 +234,14 @@ class Tracer {
       unsigned active = 0;
       for (int lane = 0; lane < 16; ++lane) {
         const auto k = static_cast<std::size_t>(lane);
-        const auto ray = static_cast<std::uint32_t>(first + lane);
-        // Place and choice of the source matter most: they share one sequence, and are stratified against each other.
-        const auto u = sobol4(ray, key);
-        auto v = sobol4(ray, key_of_rest);
-        const Member& member = pick(v[1]);
-        from[k] = point_on_triangle(member.corners, u[0], u[1]) + member.normal * problem.rays.lift();
-        const LightSample s = light_.lamps.sample(from[k], member.normal, u[2], u[3], v[0], true);
-        to[k] = s.density > 0 ? s.end : from[k];
+        const Pair p = pair(static_cast<std::uint32_t>(first + lane), key);
+        from[k] = p.from, to[k] = p.to;
         segments.set(lane, from[k], to[k]);
-        if (!(s.density > 0)) continue;
+        if (!(p.sample.density > 0)) continue;
         direction[k] = normalized(to[k] - from[k]);
-        const double cos_p = std::max(0.0, dot(member.normal, direction[k])) / std::numbers::pi;
-        weight[k] = shared_weight(cos_p, options_.lamp_rays * s.density, options_.bundle_rays * cos_p);
-        source[k] = s.patch;
+        const double cos_p = std::max(0.0, dot(p.normal, direction[k])) / std::numbers::pi;
+        weight[k] = shared_weight(cos_p, options_.lamp_rays * p.sample.density, options_.bundle_rays * cos_p);
+        source[k] = p.sample.patch;
         if (weight[k] > 0) active |= 1u << lane;
       }
       if (!active) continue;
@@ -279,7 +312,10 @@ class Tracer {
   double irradiance() const {
     double E = sky_mean_;
     for (const Arrival& a : arrivals_) E += a.weight * nodes_->mean[a.node];
-    for (const Member& m : members_) E += m.area / area_ * luminous_mean(E_[m.patch]);
+    for (const Member& m : members_) {
+      E += m.area / area_ * luminous_mean(direct_.E[m.patch]);
+      if (!direct_.E_openings.value.empty()) E += m.area / area_ * luminous_mean(direct_.E_openings[m.patch]);
+    }
     return E;
   }
 
@@ -343,7 +379,7 @@ class Tracer {
   const ElementTree& tree_;
   const BundleNet& net_;
   const NodeLight* nodes_;
-  const Field& E_;
+  const DirectLight& direct_;
   const LinkOptions& options_;
   const PatchSet& patches_;
   std::vector<Member> members_;
@@ -354,7 +390,7 @@ class Tracer {
   std::array<std::array<double, kMostMembers>, kParts> shares_{};  ///< by part of the sphere, sums
   std::array<double, kParts> part_weight_{};
   std::uint64_t key_ = 0;
-  bool hands_down_ = false;
+  bool hands_down_ = false, pairs_ = false;
   double bright_ = 0, bright_seen_ = 0;  ///< what arrives of bright patches, after and before glass [1]
   double bright_hits_ = 0;               ///< share of the bundle that ended on them
   double area_ = 0, sky_mean_ = 0, limit_ = 0, owed_ = 0, most_owed_ = 0;
@@ -382,7 +418,7 @@ void find_spaces(Transport& transport, const PatchSet& patches, const ElementTre
 
 }  // namespace
 
-Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const Field& E,
+Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const DirectLight& direct,
                       const LinkOptions& options, const Monitor& monitor) {
   const PatchSet& patches = light.problem.patches;
   const std::size_t n = patches.patch_count();
@@ -404,7 +440,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   for (std::size_t begin = 0; begin < transport.blocks.size(); begin += kBatch) {
     monitor.report("links", static_cast<double>(begin) / static_cast<double>(transport.blocks.size()));
     parallel_for(std::min(kBatch, transport.blocks.size() - begin), 1, [&](std::size_t from, std::size_t to) {
-      Tracer tracer(light, tree, net, B.size() == n ? &nodes : nullptr, E, options);
+      Tracer tracer(light, tree, net, B.size() == n ? &nodes : nullptr, direct, options);
       for (std::size_t b = begin + from; b < begin + to; ++b) {
         if (monitor.should_stop()) {
           stopped = true;
@@ -431,7 +467,8 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
 std::vector<BundleRay> trace_bundle(const Illumination& light, const ElementTree& tree, const Receiver& receiver,
                                     const LinkOptions& options) {
   const BundleNet net(options.bundle_rays, stream_key(options.seed, kBundle));
-  return Tracer(light, tree, net, nullptr, {}, options).bundle(receiver);
+  const DirectLight none;
+  return Tracer(light, tree, net, nullptr, none, options).bundle(receiver);
 }
 
 }  // namespace clerestory

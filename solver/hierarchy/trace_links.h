@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/hierarchy/links.h"
+#include "solver/lights/direct.h"
 #include "solver/lights/illumination.h"
 #include "solver/model/element_tree.h"
 #include "solver/model/monitor.h"
@@ -38,9 +39,9 @@ struct LinkOptions {
 ///
 /// light  made with what the explicit sources send more than their surroundings; its problem is that of the leaves.
 /// B      N x channels, radiosity known so far, or what it is above a level; empty: nothing is merged.
-/// E      N x channels, direct irradiance that the links do not bring [W/m2].
+/// direct light that the links do not bring; sky through the openings it has looked at is not looked for again.
 /// Cost   R + L rays for each receiver; 8 bytes a link.
-Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const Field& E,
+Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const DirectLight& direct,
                       const LinkOptions& options, const Monitor& monitor = {});
 
 struct BundleRay {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "solver/gather_point.h"
 #include "solver/model/parallel.h"
@@ -37,12 +38,12 @@ std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
 class Gatherer {
  public:
   Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options)
-      : light_(problem, B),
+      : light_(illumination(problem, B)),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
-        pilots_(wants_pilot(light_, pattern_)),
+        pilots_(wants_plan(light_, pattern_)),
         worth_(worth_a_gather(mesh, options.most_points)),
-        shares_(pilots_ ? mesh.points().position.size() : 0) {}
+        plans_(pilots_ ? mesh.points().position.size() : 0) {}
 
   /// False when the monitor stopped it.
   bool gather(VertexField& field, const Monitor& monitor) {
@@ -54,7 +55,7 @@ class Gatherer {
     field.noise.resize(end);
     field.known.resize(end);
     for (std::size_t p = begin; p < end && pilots_; ++p)
-      pilot_of_.push_back(p < shares_.size() ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
+      pilot_of_.push_back(p < plans_.size() ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
     std::vector<unsigned long long> rays(end - begin, 0);
     constexpr std::size_t kBlock = 1024;
     for (std::size_t first = begin; first < end; first += kBlock) {
@@ -72,15 +73,21 @@ class Gatherer {
   }
 
  private:
+  static Illumination illumination(const Problem& problem, const Field& B) {
+    Illumination light(problem, B);
+    light.look_at_panels();
+    return light;
+  }
   bool is_worth_it(std::size_t p) const { return p >= worth_.size() || worth_[p]; }
   void gather_at(std::size_t p, VertexField& field, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();
     PointLight mean;
     for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
       const Vec3 n = at.sample_normal[s], x = at.sample_position[s] + n * light_.problem.rays.lift();
-      if (pilots_ && pilot_of_[p] == p && shares_[p].empty()) shares_[p] = share_rays(light_, x, n, pattern_, rays);
-      static const RayShares kNone;
-      const PointLight here = gather_point(light_, x, n, pattern_, pilots_ ? shares_[pilot_of_[p]] : kNone, rays);
+      if (pilots_ && pilot_of_[p] == p && !plans_[p]) plans_[p] = plan_gather(light_, x, n, pattern_, rays);
+      static const GatherPlan kNone;
+      const auto* plan = pilots_ && plans_[pilot_of_[p]] ? &*plans_[pilot_of_[p]] : &kNone;
+      const PointLight here = gather_point(light_, x, n, pattern_, *plan, rays);
       mean.E += here.E * at.sample_weight[s];
       mean.small_lights += here.small_lights * at.sample_weight[s];
       mean.noise += here.noise * at.sample_weight[s];
@@ -94,9 +101,9 @@ class Gatherer {
   const GatherPattern pattern_;
   const ElementMesh& mesh_;
   bool pilots_;
-  std::vector<bool> worth_;              ///< by point of the mesh as it was at first
-  std::vector<std::uint32_t> pilot_of_;  ///< by point: the one that sent a pilot for it
-  std::vector<RayShares> shares_;        ///< by point of the mesh as it was at first
+  std::vector<bool> worth_;                       ///< by point of the mesh as it was at first
+  std::vector<std::uint32_t> pilot_of_;           ///< by point: the one that sent a pilot for it
+  std::vector<std::optional<GatherPlan>> plans_;  ///< by point of the mesh as it was at first
 };
 
 /// Gradient at each point of what E is there, averaged over the leaves around it.

@@ -4,17 +4,19 @@
 #include <bit>
 #include <numbers>
 
+#include "solver/lights/openings.h"
 #include "solver/lights/point_lights.h"
 #include "solver/lights/sun.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
+#include "solver/polygon_view.h"
 #include "solver/sampling.h"
 
 namespace clerestory {
 namespace {
 
-enum StreamKind : std::uint64_t { kLampPoints = 0x11, kSkyRays = 0x12, kLampRays = 0x13 };
+enum StreamKind : std::uint64_t { kLampPoints = 0x11, kSkyRays = 0x12, kLampRays = 0x13, kOpeningRays = 0x14 };
 
 /// What a point of a patch is shown of a light.
 struct Shown {
@@ -206,7 +208,52 @@ Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {
       [&](const Vec3& p, double u, double v) { return p + direction_to_sun(sun, u, v) * far_away; });
 }
 
-Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOptions& options) {
+constexpr std::size_t kMostOpenings = 4;  ///< over a patch
+
+/// Light of the sky through some openings, from points all over the patch. looked_at: those that a few rays found to
+/// show sky; light through the others is left to bundles.
+Spectrum through_openings(const Illumination& light, std::size_t patch, const DirectOptions& options,
+                          std::vector<std::uint32_t>& looked_at) {
+  constexpr int kPilotRays = 8;
+  const Problem& problem = light.problem;
+  const std::vector<LightArea>& openings = problem.lights.openings;
+  const Vec3 n = problem.patches.normal[patch];
+  const auto corners = problem.patches.corner_positions(PatchId{patch});
+  std::vector<std::uint32_t> over =
+      areas_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings, 0);
+  for (const Vec3& corner : corners)  // all of a patch may see of it is from one corner
+    for (const std::uint32_t k : areas_over(openings, corner, n, 1, 0)) over.push_back(k);
+  std::sort(over.begin(), over.end());
+  over.erase(std::unique(over.begin(), over.end()), over.end());
+
+  const auto look = [&](std::uint32_t number, std::uint64_t key, int count) {
+    Spectrum sum(0.0);
+    for (int k = 0; k < count; ++k) {
+      const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+      const Vec3 p = point_on_triangle(corners, u[0], u[1]) + n * problem.rays.lift();
+      const PolygonView polygon(p, n, openings[number].triangles, openings[number].corners);
+      if (!(polygon.solid_angle() > 0)) continue;
+      const auto [d, solid_angle] = polygon.look(u[2], u[3]);
+      const Hit hit = problem.rays.first_hit(problem.patches, {p, d});
+      if (!hit.escaped() || first_way_out(openings, looked_at, p, d, hit.first) != number) continue;
+      sum += light.sky(hit.direction({p, d})) * hit.transmittance * (std::max(0.0, dot(d, n)) * solid_angle);
+    }
+    return sum / count;
+  };
+  const std::uint64_t key = stream_key(options.seed, kOpeningRays, patch);
+  std::vector<std::uint32_t> seen;
+  for (const std::uint32_t k : over) {
+    looked_at = {k};
+    if (!look(k, stream_key(key, k + 1), kPilotRays).is_black()) seen.push_back(k);
+  }
+  looked_at = seen;
+  Spectrum E(0.0);
+  for (const std::uint32_t k : looked_at) E += look(k, mix_bits(stream_key(key, k)), options.opening_rays);
+  return E;
+}
+
+Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOptions& options,
+                  std::span<const std::uint32_t> looked_at) {
   const Problem& problem = light.problem;
   const Frame frame(problem.patches.normal[patch]);
   const auto corners = problem.patches.corner_positions(PatchId{patch});
@@ -217,7 +264,9 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
     const Ray ray{point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
                   cosine_direction(frame, u[0], u[1])};
     const Hit hit = problem.rays.first_hit(problem.patches, ray);
-    if (hit.escaped()) sum += light.sky(hit.direction(ray)) * hit.transmittance;
+    if (hit.escaped() &&
+        first_way_out(problem.lights.openings, looked_at, ray.origin, ray.direction, hit.first) == kNoOpening)
+      sum += light.sky(hit.direction(ray)) * hit.transmittance;
   }
   return sum * (std::numbers::pi / options.sky_rays);
 }
@@ -276,12 +325,21 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
 
   const double far_away = 4 * problem.rays.diameter();
   std::vector<double> daylight(n);  // [W] of each patch
+  const bool has_openings = !lights.openings.empty();
+  std::vector<std::vector<std::uint32_t>> looked_at(has_openings ? n : 0);
+  if (has_openings) direct.E_openings = Field(n, problem.patches.channels);
   const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
     const PatchSampler patch(problem, i, spend);
     const Spectrum lamps = from_lamps(lights, patch);
     Spectrum sky(0.0);
     for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
-    if (!light.sky.dark() && spend.sky_rays > 0) sky += from_sky(light, i, spend);
+    if (has_openings) {
+      const Spectrum through = through_openings(light, i, spend, looked_at[i]);
+      direct.E_openings.set(i, through);
+      if (spend.sky_rays > 0) sky += through;
+    }
+    if (!light.sky.dark() && spend.sky_rays > 0)
+      sky += from_sky(light, i, spend, has_openings ? looked_at[i] : std::vector<std::uint32_t>{});
     direct.E.set(i, lamps + sky);
     daylight[i] = luminous_mean(sky) * problem.patches.area[i];
   };
@@ -301,6 +359,14 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     });
   }
   for (const double flux : daylight) direct.energy.emitted += flux;
+  if (has_openings) {
+    direct.openings.begin.push_back(0);
+    for (const auto& numbers : looked_at) {
+      direct.openings.number.insert(direct.openings.number.end(), numbers.begin(), numbers.end());
+      direct.openings.begin.push_back(static_cast<std::uint32_t>(direct.openings.number.size()));
+    }
+    direct.rays += direct.openings.number.size() * static_cast<std::size_t>(options.opening_rays);
+  }
   direct.rays += n * static_cast<std::size_t>(options.lamp_rays) * (lights.lamp_count() + lights.suns.size());
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
   balance_lamps(problem, direct, options);

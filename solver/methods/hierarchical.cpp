@@ -153,7 +153,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
   Transport transport;
   if (options.oracle == HierarchyOptions::Oracle::error) {
-    transport = trace_links(light, tree, before ? glow : Field{}, direct.E, quality.links, monitor);
+    transport = trace_links(light, tree, before ? glow : Field{}, direct, quality.links, monitor);
   } else {
     double first_flux = 0;
     for (std::size_t i = 0; i < n; ++i)
@@ -171,9 +171,11 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   out.small_lights = direct.E;
   Field E_direct = direct.E;
   double from_sky = 0, glowing = 0;
+  const bool looks_through = quality.direct.sky_rays == 0 && !direct.E_openings.value.empty();
   for (std::size_t i = 0; i < n; ++i) {
-    E_direct.add(i, transport.E_sky[i]);
-    from_sky += leaves.area[i] * luminous_mean(transport.E_sky[i]);
+    const Spectrum sky = looks_through ? transport.E_sky[i] + direct.E_openings[i] : transport.E_sky[i];
+    E_direct.add(i, sky);
+    from_sky += leaves.area[i] * luminous_mean(sky);
     glowing += leaves.area[i] * luminous_mean(leaves.M[i]);
   }
   monitor.report("gather", 0);

@@ -25,15 +25,17 @@ struct PathSum {
 struct PathStart {
   std::array<double, 2> direction;  ///< of the first ray
   std::array<double, 3> light;      ///< choice and point of the light that shines on the first point
+  std::array<double, 3> opening;    ///< choice of an opening, and direction through it
 };
 /// That of path k; directions are given, for callers that also spread the points.
 PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, std::uint64_t key);
 
 /// Irradiance [W/m2] at point p (lifted) with unit normal n, by one path of any length:
 ///   E(x) = lights(x) + sky + sum over bounces of the product of rho times the same at the next point
-/// A light is chosen for a shadow ray at every bounce; glowing patches are met by both ways, weighted by the balance
-/// heuristic (Veach & Guibas 1995). Russian roulette ends paths that carry little, so there is no bias; it comes after
-/// the shadow ray and late, because ending a path in two halves and doubling the other is most of the noise.
+/// A light is chosen for a shadow ray at every bounce, and an opening for one at the sky; glowing patches and that sky
+/// are met by scattered rays as well, weighted by the balance heuristic (Veach & Guibas 1995). Russian roulette ends
+/// paths that carry little, so there is no bias; it comes after the shadow ray and late, because ending a path in two
+/// halves and doubling the other is most of the noise.
 ///
 /// rays   is raised by the rays traced.
 Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,

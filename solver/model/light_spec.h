@@ -1,6 +1,7 @@
 #pragma once
 // Light that does not come from surfaces of the model.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -68,12 +69,23 @@ struct Sun {
   std::uint32_t mirror = kNoMirror;  ///< as of PointLuminaire
 };
 
+/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room,
+/// or bright patches that lie together. Only a hint where to look: what it misses is found as well.
+struct LightArea {
+  std::vector<Vec3> corners;                   ///< counter-clockwise around the normal, local frame [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, wound alike [m]
+  Vec3 centre, normal;                         ///< normal: unit, to where the light goes
+  double radius = 0, area = 0;                 ///< radius: farthest point from the centre [m], area [m2]
+  double brightness = 0;                       ///< mean radiance that comes out of it [W/(m2 sr)]
+};
+
 struct Lights {
   std::vector<PointLuminaire> points;
   std::vector<SpotLuminaire> spots;
   std::vector<WebLuminaire> webs;
   std::optional<Sky> sky;
-  std::vector<Sun> suns;  ///< the scene's sun, and directional lights of a glTF file
+  std::vector<Sun> suns;            ///< the scene's sun, and directional lights of a glTF file
+  std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
 
   std::size_t lamp_count() const { return points.size() + spots.size() + webs.size(); }
   bool empty() const { return lamp_count() == 0 && !sky && suns.empty(); }

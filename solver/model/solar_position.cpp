@@ -82,7 +82,7 @@ Horizontal compass_direction(const Vec3& direction, double north_deg) {
   const double across = std::hypot(direction.x, direction.y);
   const double azimuth = across > 0 ? std::atan2(direction.x, direction.y) / kDegree - north_deg : 0;
   const double turned = azimuth - 360 * std::floor(azimuth / 360);
-  return {std::atan2(direction.z, across) / kDegree, turned < 360 ? turned : 0};  // -1e-20 rounds to 360
+  return {std::atan2(direction.z, across) / kDegree, turned < 360 ? turned : 0};  // rounding may give 360
 }
 
 }  // namespace clerestory

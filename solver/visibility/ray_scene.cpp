@@ -131,7 +131,7 @@ struct RayScene::Impl {
     RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
     rtcIntersect1(opaque.handle, &c, &r);
     Hit hit;
-    hit.distance = r.ray.tfar;
+    hit.distance = hit.first = r.ray.tfar;
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       hit.triangle = TriangleId{opaque.of_primitive[r.hit.primID]};
       const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
@@ -151,7 +151,9 @@ struct RayScene::Impl {
       const Vec3 n = along < 0 ? mirror->normal : -mirror->normal;
       ray = {hit.position(first) + n * lift(), ray.direction - mirror->normal * (2 * along)};
       const Spectrum so_far = hit.transmittance * mirror->reflectance;
+      const float to_first = hit.first;
       hit = one_leg(patches, ray);
+      hit.first = to_first;
       hit.transmittance *= so_far;
       hit.reflected = true;
       hit.leg = ray;
@@ -234,7 +236,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
     for (std::size_t k = 0; k < count; ++k) {
       Hit& hit = hits[first + k];
       hit = Hit{};
-      hit.distance = packet.ray.tfar[k];
+      hit.distance = hit.first = packet.ray.tfar[k];
       if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
         hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
         const float along = packet.hit.Ng_x[k] * packet.ray.dir_x[k] + packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
@@ -256,15 +258,25 @@ Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray) const {
   return hit;
 }
 
+double RayScene::first_surface(const Ray& ray) const {
+  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
+  rtcIntersect1(impl_->opaque.handle, &c, &r);
+  return r.ray.tfar;
+}
+
 std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) const {
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
   alignas(64) int valid[16];
   RTCRay16 packet;
+  // Without 16 lanes of hardware Embree reads lanes that are not valid too: they must hold numbers.
   for (std::size_t k = 0; k < 16; ++k) {
-    valid[k] = (active >> k) & 1 ? -1 : 0;
-    packet.org_x[k] = s.from_x[k], packet.org_y[k] = s.from_y[k], packet.org_z[k] = s.from_z[k];
-    packet.dir_x[k] = s.to_x[k] - s.from_x[k], packet.dir_y[k] = s.to_y[k] - s.from_y[k];
-    packet.dir_z[k] = s.to_z[k] - s.from_z[k];
+    const bool on = (active >> k) & 1;
+    valid[k] = on ? -1 : 0;
+    packet.org_x[k] = on ? s.from_x[k] : 0, packet.org_y[k] = on ? s.from_y[k] : 0;
+    packet.org_z[k] = on ? s.from_z[k] : 0;
+    packet.dir_x[k] = on ? s.to_x[k] - s.from_x[k] : 0, packet.dir_y[k] = on ? s.to_y[k] - s.from_y[k] : 0;
+    packet.dir_z[k] = on ? s.to_z[k] - s.from_z[k] : 1;
     packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
     packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
   }

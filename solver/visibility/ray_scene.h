@@ -23,6 +23,7 @@ struct Hit {
   float distance = 0;           ///< along the unit direction [m]
   Spectrum transmittance{1.0};  ///< of glass and mirrors on the way
 
+  float first = 0;         ///< distance to the first surface, be it a mirror [m]
   bool reflected = false;  ///< by mirrors on the way
   Ray leg;                 ///< when reflected: the last part of the way; `distance` is its length then
 
@@ -70,6 +71,9 @@ class RayScene {
   Hit first_hit(const PatchSet& patches, const Ray& ray) const;
   /// The same for rays that go nearly the same way, in packets of 16; scattered ones are faster one by one.
   void first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const;
+
+  /// Distance to the first surface that is not glass; infinite when there is none [m].
+  double first_surface(const Ray& ray) const;
 
   /// Bit k is set when nothing opaque blocks segment k; glass is ignored. `active` has a bit for each segment to test.
   std::uint16_t visible16(const SegmentPacket& segments, std::uint16_t active = 0xffff) const;

@@ -217,6 +217,35 @@ def room_sunpatch(folder):
 CELL = (3.0, 2.5, 2.6)
 
 
+def office(name, window):
+    """A daylit office 4 x 6 m; the sheet of its facade has a hole, window = (x, z, width, height). Points on all surfaces
+    and, 500 of 1,500, on a plane 0.8 m above the floor."""
+    def make(folder):
+        m = Model(6)
+        a, b, h = (4, 0, 0), (0, 6, 0), (0, 0, 3)
+        m.quad("floor", (0, 0, 0), a, b)
+        m.quad("ceiling", (0, 0, 3), b, a)
+        m.quad("wall", (0, 6, 0), a, h)
+        m.quad("wall", (0, 0, 0), b, h)
+        m.quad("wall", (4, 0, 0), h, b)
+        x, z, w, t = window
+        m.quad("wall", (0, 0, 0), (0, 0, z), a)
+        m.quad("wall", (0, 0, z + t), (0, 0, 3 - z - t), a)
+        m.quad("wall", (0, 0, z), (0, 0, t), (x, 0, 0))
+        m.quad("wall", (x + w, 0, z), (0, 0, t), (4 - x - w, 0, 0))
+        m.box("block", (0.5, 1.2, 0.70), (0.8, 0, 0), (0, 1.6, 0), (0, 0, 0.04), bottom_sampled=True)
+        m.box("block", (3.3, 3.5, 0), (0.6, 0, 0), (0, 1.5, 0), (0, 0, 1.8))
+        plane = Model(6)
+        plane.quad("floor", (0.01, 0.01, 0.8), (3.98, 0, 0), (0, 5.98, 0))
+        plane.solids = m.solids
+        materials = {"floor": {"reflectance": 0.2}, "wall": {"reflectance": 0.5}, "ceiling": {"reflectance": 0.7},
+                     "block": {"reflectance": 0.4}}
+        write_scene(folder, name, m, {"materials": materials,
+                                      "sky": {"model": "cie-overcast", "horizontal_illuminance": 10000}},
+                    m.points(1000) + plane.points(500, seed=3))
+    return make
+
+
 def small_room(m, at):
     m.room(at, add(at, CELL))
     m.box("block", add(at, (0.9, 0.7, 0)), (0.7, 0.25, 0), (-0.25, 0.7, 0), (0, 0, 1.1))
@@ -301,6 +330,7 @@ def sealed(folder, name, sheet):
 SCENES = {
     "room_lamp": room_lamp, "room_cornell_mm": room_cornell_mm, "room_uplight": room_uplight,
     "room_thread": room_thread, "room_sunpatch": room_sunpatch,
+    "office_window": office("office_window", (0.5, 0.9, 3, 1.5)), "office_slit": office("office_slit", (1.5, 1.4, 1, 0.001)),
     "sealed_slab": lambda f: sealed(f, "sealed_slab", False),
     "sealed_sheet": lambda f: sealed(f, "sealed_sheet", True),
     **{"rooms_%d" % n: lambda f, n=n: rooms(f, n, 0.25) for n in (1, 3, 10, 26, 100, 260)},  # 4,000 elements each

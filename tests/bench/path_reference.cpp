@@ -119,7 +119,8 @@ double replicate(const Illumination& light, const std::optional<SunPatch>& patch
     const auto u4 = sobol4(static_cast<std::uint32_t>(k), key);
     const std::array<double, 2> u{u4[0], u4[1]};
     RandomStream random(key, static_cast<std::uint64_t>(k));
-    sum += patch ? trace_path(light, *patch, p, n, u, random) : trace_path(light, p, n, u, random, rays);
+    sum += patch ? trace_path(light, *patch, p, n, u, random)
+                 : trace_path(light, p, n, path_start(u, static_cast<std::uint32_t>(k), key), random, rays);
   }
   return photometric(sum / Estimate::kPaths);
 }
@@ -173,7 +174,7 @@ int run(const Arguments& arguments) {
   PatchSet& patches = meshed.patches;
   patches.channels = scene.channels();
   const RayScene rays(patches);
-  const Lights lights = to_local_frame(scene.lights, patches.origin);
+  const Lights lights = local_lights(scene.lights, patches, rays);
   const Problem problem{patches, rays, lights};
   make_patches(patches, find_lit_sides(problem, 1).wanted);
   const Illumination light(problem);

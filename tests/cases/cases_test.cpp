@@ -1,30 +1,19 @@
 // Every folder beside this file with a case.txt: solved by the program, compared with its rows of the reference.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
-#include "tests/support/csv_rows.h"
-#include "tests/support/result_file.h"
-#include "tests/support/run_program.h"
+#include "tests/cases/solve_case.h"
 
-namespace clerestory {
+namespace clerestory::test {
 namespace {
 
 namespace fs = std::filesystem;
 const fs::path kCases = fs::path(CLERESTORY_SOURCE_DIR) / "tests" / "cases";
 const fs::path kReference = fs::path(CLERESTORY_SOURCE_DIR) / ".." / "shared" / "reference";
-
-/// "key value" lines.
-std::map<std::string, std::string> read_case(const fs::path& file) {
-  std::map<std::string, std::string> out;
-  std::istringstream lines(read_text(file));
-  for (std::string line; std::getline(lines, line);)
-    if (const auto blank = line.find(' '); blank != line.npos) out[line.substr(0, blank)] = line.substr(blank + 1);
-  return out;
-}
 
 std::vector<std::string> names_of_cases() {
   std::vector<std::string> names;
@@ -34,70 +23,63 @@ std::vector<std::string> names_of_cases() {
   return names;
 }
 
-/// Flux [lm] on the surfaces whose names begin with `word`: its mean over them; of all surfaces when it is empty: the
-/// sum.
-double flux_on(const ResultFile& result, const std::string& word) {
-  const auto& names = result.texts.at("surface_names");
-  const auto &surface = result.of_cells.at("surface").values, &area = result.of_cells.at("area").values,
-             &lux = result.of_cells.at("illuminance").values;
-  std::map<std::size_t, double> flux;
-  for (std::size_t i = 0; i < area.size(); ++i) {
-    const auto s = static_cast<std::size_t>(surface[i]);
-    if (names.at(s).starts_with(word)) flux[s] += lux[i] * area[i];
+/// How far off some values are, and where most.
+struct Deviations {
+  std::size_t count = 0;
+  double sum = 0, worst = 0;
+  std::string worst_row;
+
+  void add(double off, double value, const CsvRow& row) {
+    ++count, sum += off;
+    if (off < worst) return;
+    worst = off;
+    worst_row = row.at("quantity") + " at " + row.at("point") + " (" + row.at("x") + ", " + row.at("y") + ", " +
+                row.at("z") + "): " + std::to_string(value) + " for " + row.at("value");
   }
-  double sum = 0;
-  for (const auto& [s, lumens] : flux) sum += lumens;
-  return word.empty() ? sum : sum / static_cast<double>(flux.size());
+  double mean() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
+};
+
+/// A line of the table.
+struct OfConfig {
+  std::string config;
+  Deviations relative, of_zeros;  ///< rows that are 0 in the reference count in their unit
+};
+
+std::vector<OfConfig> table_of(const CaseFolder& folder) {
+  std::vector<OfConfig> table;
+  for (const CaseScene& scene : folder.scenes(kReference)) {
+    const std::vector<double> values = solve_case(folder, scene);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const CsvRow& row = scene.rows[i];
+      auto line = std::ranges::find(table, row.at("config"), &OfConfig::config);
+      if (line == table.end()) line = table.insert(table.end(), {row.at("config"), {}, {}});
+      const double wanted = std::stod(row.at("value"));
+      if (wanted == 0)
+        line->of_zeros.add(std::abs(values[i]), values[i], row);
+      else
+        line->relative.add(std::abs(values[i] / wanted - 1), values[i], row);
+    }
+  }
+  return table;
 }
 
 class Case : public testing::TestWithParam<std::string> {};
 
 TEST_P(Case, HoldsItsNumbers) {
   if (!fs::exists(kReference)) GTEST_SKIP() << "no ../shared/reference beside this checkout";
-  const auto wanted = read_case(kCases / GetParam() / "case.txt");
-  std::vector<test::CsvRow> rows;
-  for (auto& row : test::csv_rows(kReference / wanted.at("reference")))
-    if (row["case"] == wanted.at("case")) rows.push_back(row);
-  ASSERT_FALSE(rows.empty());
-
-  const TempFolder folder;
-  std::string points = "x,y,z,nx,ny,nz\n";
-  for (auto& row : rows) {
-    if (row["x"].empty()) continue;
-    for (const char* key : {"x", "y", "z", "nx", "ny"}) points += row[key] + ",";
-    points += row["nz"] + "\n";
+  const CaseFolder folder = read_case(kCases / GetParam());
+  const std::vector<OfConfig> table = table_of(folder);
+  ASSERT_FALSE(table.empty());
+  std::printf("case,config,rows,mean_percent,worst_percent,worst_of_zeros\n");
+  for (const auto& [config, relative, of_zeros] : table) {
+    std::printf("%s,\"%s\",%zu,%.4f,%.4f,%.2g\n", GetParam().c_str(), config.c_str(), relative.count + of_zeros.count,
+                100 * relative.mean(), 100 * relative.worst, of_zeros.worst);
+    EXPECT_LE(relative.worst, folder.number("largest", 0)) << config << ", " << relative.worst_row;
+    EXPECT_LE(relative.mean(), folder.number("mean", 1)) << config << ", mean of " << relative.count << " rows";
+    EXPECT_LE(of_zeros.worst, folder.number("zero", 0)) << config << ", " << of_zeros.worst_row;
   }
-  std::vector<std::string> arguments{"solve", (kCases / GetParam() / "scene.json").string(), "-o", folder / "out.vtp",
-                                     "--quiet"};
-  const bool has_points = std::count(points.begin(), points.end(), '\n') > 1;
-  if (has_points)
-    arguments.insert(arguments.end(),
-                     {"--sensors", folder.write("points.csv", points), "--sensors-out", folder / "sensors.csv"});
-  const ProgramRun run = run_program(arguments);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-
-  const ResultFile result = read_result(folder / "out.vtp");
-  std::vector<test::CsvRow> sensors;
-  if (has_points) sensors = test::csv_rows(folder / "sensors.csv");
-  const double largest = std::stod(wanted.at("largest"));
-  double worst = 0;
-  std::size_t next = 0;
-  for (auto& row : rows) {
-    double value = 0;
-    if (!row["x"].empty())
-      value = std::stod(sensors.at(next++)["illuminance"]);
-    else if (row["unit"] == "lm")
-      value = flux_on(result, row["point"]);
-    else  // of all flux, of which the case emits 10,000 lm
-      value = flux_on(result, "") / 10'000;
-    const double off = value / std::stod(row["value"]) - 1;
-    worst = std::max(worst, std::abs(off));
-    EXPECT_NEAR(off, 0, largest) << row["config"] << ", " << row["point"] << " (" << row["x"] << ", " << row["y"]
-                                 << ", " << row["z"] << "): " << value << " for " << row["value"];
-  }
-  std::printf("%s: worst of %zu rows %.4f %%\n", GetParam().c_str(), rows.size(), 100 * worst);
 }
 INSTANTIATE_TEST_SUITE_P(All, Case, testing::ValuesIn(names_of_cases()), [](const auto& i) { return i.param; });
 
 }  // namespace
-}  // namespace clerestory
+}  // namespace clerestory::test

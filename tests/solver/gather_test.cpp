@@ -47,7 +47,7 @@ TEST(GatherPoint, OfASmallLampAndASmallWindowHasNoBias) {
   constexpr int kRepeats = 400;
   unsigned long long traced = 0;
   for (std::uint64_t k = 0; k < kRepeats; ++k) {
-    const GatherPattern pattern({.grid = 16, .rays = 256, .most_rays = 512, .lamp_rays = 32}, stream_key(8, k));
+    const GatherPattern pattern({.bundle = {16, 256, 512}, .lamp_rays = 32}, stream_key(8, k));
     const double E = gather_point(Illumination(problem, B), p, n, pattern, traced).E[0];
     sum += E, squares += E * E;
   }

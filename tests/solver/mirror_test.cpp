@@ -98,7 +98,7 @@ TEST(Mirror, ShowsAGlowingPatchAsItsImage) {
   const Illumination light(problem, patches.M);
   unsigned long long traced = 0;
   // 16,384 rays in strata of which a twentieth meets the image's edge.
-  EXPECT_NEAR(gather_point(light, p, n, GatherPattern({.rays = 16384, .most_rays = 16384}, 1), traced).E[0] / exact, 1,
+  EXPECT_NEAR(gather_point(light, p, n, GatherPattern({.bundle = {16, 16384, 16384}}, 1), traced).E[0] / exact, 1,
               0.01);
   const PathEstimate paths = trace_paths_at_point(Illumination(problem), p, n, 1, 65'536, traced);
   EXPECT_NEAR(paths.E[0], exact, 4 * paths.std_error[0]);

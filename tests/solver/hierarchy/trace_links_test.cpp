@@ -23,7 +23,9 @@ struct Linked {
 
   Linked(PatchSet p, const LinkOptions& options)
       : patches(std::move(p)), glow(patches.M), tree(build_tree(patches, glow)) {
-    transport = trace_links(Illumination(problem, glow), tree, {}, Field(patches.patch_count(), 1), options);
+    DirectLight none;
+    none.E = Field(patches.patch_count(), 1);
+    transport = trace_links(Illumination(problem, glow), tree, {}, none, options);
   }
   Field gather(const Field& B) const {
     Field nodes, E(patches.patch_count(), 1);

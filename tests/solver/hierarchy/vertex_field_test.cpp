@@ -13,7 +13,7 @@ namespace {
 
 using testing::MeshedRoom;
 
-constexpr GatherQuality kFew{.rays = 256, .most_rays = 256, .lamp_rays = 256};
+constexpr GatherQuality kFew{.bundle = {16, 256, 256}, .lamp_rays = 256};
 
 Field emission(const PatchSet& patches) { return patches.M; }
 
@@ -60,7 +60,7 @@ TEST(GatherField, ATighterToleranceInterpolatesBetter) {
       const Vec3 n = room.patches.normal[e.patch];
       unsigned long long rays = 0;
       const double E =
-          gather_point(light, (x[0] + x[1] + x[2]) / 3 + n * room.rays.lift(), n, pattern, RayShares{}, rays).E[0];
+          gather_point(light, (x[0] + x[1] + x[2]) / 3 + n * room.rays.lift(), n, pattern, GatherPlan{}, rays).E[0];
       const double linear = (field.E[e.point[0]][0] + field.E[e.point[1]][0] + field.E[e.point[2]][0]) / 3;
       const double a = std::ldexp(room.patches.area[e.patch], -e.level);
       squares += a * (linear - E) * (linear - E), mean += a * E, area += a;

@@ -48,8 +48,9 @@ double rms_error(const PatchSet& patches, const Field& E, const Solution& refere
 
 Solution paths(const Room& room, const PatchSet& leaves, int count) {
   const Problem problem{leaves, room.rays, room.lights};
-  return path_trace(Illumination(problem), {Field(leaves.patch_count(), leaves.channels), {}, 0},
-                    measure_closure(problem, 16, 1), {.paths = count, .seed = 99});
+  DirectLight none;
+  none.E = Field(leaves.patch_count(), leaves.channels);
+  return path_trace(Illumination(problem), none, measure_closure(problem, 16, 1), {.paths = count, .seed = 99});
 }
 
 /// A room with two blocks and a lamp 12 mm under its ceiling, black on its back.

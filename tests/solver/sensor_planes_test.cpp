@@ -73,7 +73,8 @@ TEST(SensorPlanes, LeadBackToTheSensorsThatHaveMostOfThem) {
   const SensorPlanes sensors = planes_of(sets);
   EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{0, 1, 2, 3, 22}), (std::vector<std::size_t>{0, 2}));
   EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), std::vector<std::size_t>{});
-  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), std::vector<std::size_t>{1});
+  EXPECT_EQ(sensors_of(sensors, std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}),
+            std::vector<std::size_t>{1});
   EXPECT_EQ(sensors_of(sensors, {}), std::vector<std::size_t>{});
 }
 

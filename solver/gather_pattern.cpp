@@ -22,8 +22,7 @@ std::array<float, 3> local_direction(double u, double v) {
 int RayBudget::least() const { return std::bit_width(static_cast<unsigned>(std::max(1, rays / strata()))) - 1; }
 int RayBudget::deepest() const { return most_rays > rays ? least() + kMostHalvings : least(); }
 
-template <class Value>
-Strata<Value>::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_key, Value (*map)(double, double))
+Strata::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_key)
     : budget_(budget), deepest_(budget.deepest()) {
   const auto count = static_cast<std::uint32_t>(budget.strata());
   const auto stratum_at = [&](const auto& u) { return static_cast<std::size_t>(budget_.stratum_of(u[0], u[1])); };
@@ -31,18 +30,18 @@ Strata<Value>::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t 
   fresh_.resize(std::size_t{count} << deepest_);
   for (std::uint32_t k = 0; k < fresh_.size(); ++k) {
     const auto u = sobol4(k, key);
-    fresh_[(stratum_at(u) << deepest_) + k / count] = map(u[0], u[1]);
+    fresh_[(stratum_at(u) << deepest_) + k / count] = local_direction(u[0], u[1]);
   }
   pilot_.resize(count);
   for (std::uint32_t k = 0; k < count; ++k) {
     const auto u = sobol4(k, pilot_key);
-    pilot_[stratum_at(u)] = map(u[0], u[1]);
+    pilot_[stratum_at(u)] = local_direction(u[0], u[1]);
   }
 }
 
 GatherPattern::GatherPattern(const GatherQuality& quality, std::uint64_t seed)
     : quality_(quality),
-      bundle_(quality.bundle, stream_key(seed, 1), stream_key(seed, 2), local_direction),
+      bundle_(quality.bundle, stream_key(seed, 1), stream_key(seed, 2)),
       area_cells_(quality.area.last, stream_key(seed, 5)),
       sun_key_(stream_key(seed, 4)) {
   const std::uint64_t lamp_key = stream_key(seed, 3);

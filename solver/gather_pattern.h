@@ -37,27 +37,24 @@ struct GatherQuality {
   int sun_rays = 16;                 ///< to each sun
 };
 
-/// Points of the unit square by stratum, or what they are mapped to. The points of a stratum are a sequence: its first
-/// 2^k are themselves well spread, all strata together, as the points of one Owen-scrambled Sobol sequence are. Pilot
-/// points are another sequence.
-template <class Value>
+/// Cosine-distributed directions in the frame of the normal (z), by stratum of the unit square. Those of a stratum are
+/// a sequence: its first 2^k are themselves well spread, all strata together, as the points of one Owen-scrambled Sobol
+/// sequence are. Pilots are another sequence.
 class Strata {
  public:
-  Strata() = default;
-  /// map  from (u, v) to Value.
-  Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_key, Value (*map)(double u, double v));
+  Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_key);
 
   const RayBudget& budget() const { return budget_; }
-  /// The first 2^deepest points of a stratum.
-  std::span<const Value> points(int stratum) const {
+  /// The first 2^deepest directions of a stratum.
+  std::span<const std::array<float, 3>> directions(int stratum) const {
     return std::span(fresh_).subspan(static_cast<std::size_t>(stratum) << deepest_, std::size_t{1} << deepest_);
   }
-  const Value& pilot(int stratum) const { return pilot_[static_cast<std::size_t>(stratum)]; }
+  const std::array<float, 3>& pilot(int stratum) const { return pilot_[static_cast<std::size_t>(stratum)]; }
 
  private:
   RayBudget budget_;
   int deepest_ = 0;
-  std::vector<Value> fresh_, pilot_;
+  std::vector<std::array<float, 3>> fresh_, pilot_;
 };
 
 /// All points use the same directions around their normal: what error is left then varies over a surface as smoothly as
@@ -67,8 +64,7 @@ class GatherPattern {
   GatherPattern(const GatherQuality& quality, std::uint64_t seed);
 
   const GatherQuality& quality() const { return quality_; }
-  /// Directions in the frame of the normal (z), cosine-distributed.
-  const Strata<std::array<float, 3>>& bundle() const { return bundle_; }
+  const Strata& bundle() const { return bundle_; }
   const AreaCells& area_cells() const { return area_cells_; }
   /// Which light, and where on it, for each lamp ray.
   const std::vector<std::array<double, 3>>& lamp_choices() const { return lamp_choices_; }
@@ -81,7 +77,7 @@ class GatherPattern {
 
  private:
   GatherQuality quality_;
-  Strata<std::array<float, 3>> bundle_;
+  Strata bundle_;
   AreaCells area_cells_;
   std::vector<std::array<double, 3>> lamp_choices_, lamp_pilots_;
   std::uint64_t sun_key_;

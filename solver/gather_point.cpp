@@ -130,27 +130,28 @@ std::size_t share_of(const RayShares& shares, const RayBudget& budget, int strat
   return std::size_t{1} << (shares.empty() ? budget.least() : shares[static_cast<std::size_t>(stratum)]);
 }
 
+/// Of cosine-distributed directions, per solid angle, in the frame of the normal.
+double cosine_density(const std::array<float, 3>& d) { return std::max(1e-6, static_cast<double>(d[2])) / kPi; }
+
 struct Sum {
   Spectrum E{0.0};
   double noise = 0;  ///< variance by the differences of neighbouring rays
 };
 
-/// Mean over the unit square of w pi L, L along the rays that belong to `owner`, else 0.
-///   sight(point)                   direction, and solid angle there for each share of the square
-///   weight(direction, per_share)   w
-template <class Value, class Sight, class Weight>
-Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& shares, std::uint32_t owner,
-              const Sight& sight, const Weight& weight, unsigned long long& rays) {
+/// Irradiance along the bundle's rays that belong to nobody else.
+Sum from_bundle(const View& view, const Frame& frame, const Strata& strata, const RayShares& shares,
+                unsigned long long& rays) {
   std::array<Vec3, 16> directions;
-  std::array<double, 16> density, factor;
+  std::array<double, 16> density, share_of_ray;
   std::array<Spectrum, 16> values;
   std::size_t queued = 0;
   Sum sum;
   const auto flush = [&] {
-    view.look(std::span(directions).first(queued), density, owner, std::span(values).first(queued));
-    for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * factor[k];
+    view.look(std::span(directions).first(queued), density, kNobody, std::span(values).first(queued));
+    for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * share_of_ray[k];
     for (std::size_t k = 0; k + 1 < queued; k += 2) {
-      const double difference = luminous_mean(values[k]) * factor[k] - luminous_mean(values[k + 1]) * factor[k + 1];
+      const double difference =
+          luminous_mean(values[k]) * share_of_ray[k] - luminous_mean(values[k + 1]) * share_of_ray[k + 1];
       sum.noise += difference * difference;
     }
     rays += queued;
@@ -160,11 +161,10 @@ Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& sh
   for (int cell = 0; cell < budget.strata(); ++cell) {
     const std::size_t count = share_of(shares, budget, cell);
     const double share = 1.0 / static_cast<double>(count * static_cast<std::size_t>(budget.strata()));
-    for (const auto& point : strata.points(cell).first(count)) {
-      const auto [direction, per_share] = sight(point);
-      directions[queued] = direction;
-      density[queued] = 1 / (share * per_share);
-      factor[queued++] = share * weight(direction, per_share);
+    for (const auto& d : strata.directions(cell).first(count)) {
+      directions[queued] = frame.to_world(d[0], d[1], d[2]);
+      density[queued] = cosine_density(d) / share;
+      share_of_ray[queued++] = share;
       if (queued == 16) flush();
     }
   }
@@ -172,10 +172,9 @@ Sum integrate(const View& view, const Strata<Value>& strata, const RayShares& sh
   return sum;
 }
 
-/// What pilot rays find in each stratum; 0 where they do not belong to `owner`.
-template <class Value, class Sight>
-std::vector<Spectrum> pilot_values(const View& view, const Strata<Value>& strata, std::uint32_t owner,
-                                   const Sight& sight, unsigned long long& rays) {
+/// What pilot rays of the bundle find in each stratum; 0 where they belong to an opening or a panel.
+std::vector<Spectrum> pilot_values(const View& view, const Frame& frame, const Strata& strata,
+                                   unsigned long long& rays) {
   const int count = strata.budget().strata();
   const double share = 1.0 / (count << strata.budget().least());
   std::vector<Spectrum> found(static_cast<std::size_t>(count));
@@ -183,11 +182,11 @@ std::vector<Spectrum> pilot_values(const View& view, const Strata<Value>& strata
   std::array<double, 16> density;
   for (int first = 0; first < count; first += 16) {
     for (int k = 0; k < 16; ++k) {
-      const auto [direction, per_share] = sight(strata.pilot(first + k));
-      directions[static_cast<std::size_t>(k)] = direction;
-      density[static_cast<std::size_t>(k)] = 1 / (share * per_share);
+      const auto& d = strata.pilot(first + k);
+      directions[static_cast<std::size_t>(k)] = frame.to_world(d[0], d[1], d[2]);
+      density[static_cast<std::size_t>(k)] = cosine_density(d) / share;
     }
-    view.look(directions, density, owner, std::span(found).subspan(static_cast<std::size_t>(first), 16));
+    view.look(directions, density, kNobody, std::span(found).subspan(static_cast<std::size_t>(first), 16));
   }
   rays += static_cast<unsigned>(count);
   return found;
@@ -225,13 +224,6 @@ RayShares shares_by(const std::vector<Spectrum>& found, const RayBudget& budget)
         std::clamp(static_cast<int>(std::lround(std::log2(wanted))), budget.least(), budget.deepest()));
   }
   return shares;
-}
-
-/// Cosine-distributed directions: each stands for an equal part of the irradiance of an even view.
-auto bundle_sight(const Frame& frame) {
-  return [&frame](const std::array<float, 3>& d) {
-    return PolygonView::Sight{frame.to_world(d[0], d[1], d[2]), kPi / std::max(1e-6, static_cast<double>(d[2]))};
-  };
 }
 
 /// Where to look at an area, how, and who else may own a ray.
@@ -360,12 +352,12 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   for (const std::uint32_t k : plan.panels) left -= light.panels.flux[k];
   plan.looks_for_lamps = (light.panels.shape.empty() || left > kWorthLooking * light.panels.all_flux) &&
                          (light.sky.dark() || sees_lamps(light, p, n, pattern, rays));
-  const Strata<std::array<float, 3>>& bundle = pattern.bundle();
+  const Strata& bundle = pattern.bundle();
   const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
   const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;
   if (sky == SkyInView::edge) {
     const View view(light, p, frame, lamp_rays(light, pattern, plan), plan);
-    plan.bundle = shares_by(pilot_values(view, bundle, kNobody, bundle_sight(frame), rays), bundle.budget());
+    plan.bundle = shares_by(pilot_values(view, frame, bundle, rays), bundle.budget());
   } else if (sky == SkyInView::all) {  // changes slowly all over: half of the surplus, evenly
     const int rays_each = (bundle.budget().rays + bundle.budget().most_rays) / 2 / bundle.budget().strata();
     plan.bundle.assign(static_cast<std::size_t>(bundle.budget().strata()),
@@ -379,8 +371,7 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
   const int to_lamps = lamp_rays(light, pattern, plan);
   const Frame frame(n);
   const View view(light, p, frame, to_lamps, plan);
-  Sum sum = integrate(
-      view, pattern.bundle(), plan.bundle, kNobody, bundle_sight(frame), [](const Vec3&, double) { return 1.0; }, rays);
+  Sum sum = from_bundle(view, frame, pattern.bundle(), plan.bundle, rays);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
     // A plan may come from the other side of the area's plane: from there no ray belongs to it.
     if (!(dot(p - area.centre, area.normal) > 0)) return;

@@ -13,7 +13,7 @@ namespace clerestory {
 ///
 /// Of rectangles, which most windows and lamps are, u and v run along the sides: edges along them (sills, horizons,
 /// shelves) pass few cells of a grid. Of other polygons, (u, v) goes to one of the triangles in proportion to its solid
-/// angle, and evenly into it. p may lie anywhere: in the polygon's plane it sees nothing. Cost: 0.3 us. Sources: Urena,
+/// angle, and evenly into it. p may lie anywhere: in the polygon's plane it sees nothing. Sources: Urena,
 /// Fajardo & King, "An area-preserving parametrization for spherical rectangles", 2013; Arvo, "Stratified sampling of
 /// spherical triangles", 1995; triangles too small for it are taken as plane.
 class PolygonView {

@@ -5,8 +5,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "pipeline/wording.h"
+
 #include "apps/interrupt.h"
-#include "apps/wording.h"
 #include "io/atomic_file.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
@@ -17,7 +18,7 @@ Console::Console(const CommonArguments& arguments)
     : quiet_(arguments.quiet),
       verbose_(arguments.verbose),
       interrupted_(catch_interrupts()),
-      progress_(std::cerr, ::isatty(STDERR_FILENO) == 1, start_) {
+      progress_line_(std::cerr, ::isatty(STDERR_FILENO) == 1, start_) {
   set_thread_count(arguments.threads);
   if (!arguments.report.empty()) check_writable(arguments.report);
   if (arguments.log.empty()) return;
@@ -32,56 +33,44 @@ void Console::log(const char* kind, const std::string& line) {
 void Console::say(const std::string& line) {
   log("", line);
   if (quiet_) return;
-  progress_.clear();
+  progress_line_.clear();
   std::cout << line << std::endl;
 }
 
 void Console::warn(const std::string& line) {
   log("warning: ", line);
   warnings_.push_back(line);
-  progress_.clear();
+  progress_line_.clear();
   std::cerr << "warning: " << line << std::endl;
 }
 
 void Console::fail(const std::string& line) {
   log("error: ", line);
-  progress_.clear();
+  progress_line_.clear();
   std::cerr << "error: " << line << std::endl;
 }
 
 void Console::note(const std::string& line) {
   log("", line);
   if (!verbose_) return;
-  progress_.clear();
+  progress_line_.clear();
   std::cerr << line << std::endl;
 }
 
-void Console::on_progress(std::string_view stage, double done) {
-  const double now = elapsed();
-  if (stages_.empty() || stages_.back().name != stage) {
-    if (!stages_.empty()) stages_.back().end = now;  // the last report of a stage comes before its last stretch of work
-    stages_.push_back({std::string(stage), now, now});
-    log("", std::string(stage));
+void Console::progress(std::string_view stage, double done) {
+  if (stage_ != stage) {
+    stage_ = stage;
+    log("", stage_);
   }
-  stages_.back().end = now;
-  if (!quiet_) progress_.update(stage, done);
+  if (!quiet_) progress_line_.update(stage, done);
 }
 
-Monitor Console::monitor(std::chrono::steady_clock::time_point deadline) {
-  return {[this](std::string_view stage, double done) { on_progress(stage, done); }, &interrupted_, deadline};
+Monitor Console::monitor() {
+  return {[this](std::string_view stage, double done) { progress(stage, done); }, [this] { return should_stop(); }};
 }
-
-bool Console::interrupted() const { return interrupted_; }
 
 double Console::elapsed() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
-
-double Console::seconds_in(const std::string& name) const {
-  double sum = 0;
-  for (const Stage& stage : stages_)
-    if (stage.name.starts_with(name)) sum += stage.end - stage.begin;
-  return sum;
 }
 
 std::size_t peak_memory_bytes() {

@@ -1,6 +1,6 @@
 #include "apps/mesh_summary.h"
 
-#include "apps/wording.h"
+#include "pipeline/wording.h"
 
 namespace clerestory {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ostream>
 
-#include "apps/wording.h"
+#include "pipeline/wording.h"
 
 namespace clerestory {
 namespace {

@@ -5,13 +5,14 @@
 #include <map>
 #include <tuple>
 
-#include "apps/wording.h"
+#include "pipeline/wording.h"
+
 #include "io/text.h"
-#include "solver/form_factors/form_factor_matrix.h"
+#include "solver/evaluate/sensor_summary.h"
 #include "solver/lights/point_lights.h"
-#include "solver/memory_estimate.h"
+#include "solver/methods/form_factor_matrix.h"
 #include "solver/model/units.h"
-#include "solver/sensor_summary.h"
+#include "solver/run/memory_estimate.h"
 
 namespace clerestory {
 namespace {
@@ -125,6 +126,7 @@ std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors)
 
 void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.method = s.solution.method;
+  r.seconds = s.seconds;
   r.counts.triangles = s.repairs.triangles;
   r.counts.elements = s.patches.patch_count();
   r.counts.dark_sides = s.lit_sides.dark_sides;
@@ -147,14 +149,6 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.luminaires = luminaires_by_file(scene.lights);
   r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));
   r.left_out = what_was_left_out(scene, s);
-}
-
-void split_by_stage(RunReport::Seconds& s, const Console& console) {
-  const double vertices = console.seconds_in("vertices");
-  s.direct = console.seconds_in("direct");
-  s.refine = console.seconds_in("refine") + console.seconds_in("links");
-  s.reconstruct += vertices;
-  s.gather -= s.direct + s.refine + vertices;
 }
 
 void say_summary(const RunReport& r, const Solved& s, Console& console) {

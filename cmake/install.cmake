@@ -5,9 +5,10 @@ include(CMakePackageConfigHelpers)
 add_library(clerestory_clerestory INTERFACE)
 add_library(clerestory::clerestory ALIAS clerestory_clerestory)
 target_link_libraries(clerestory_clerestory INTERFACE
-  clerestory::model clerestory::solver clerestory::meshing clerestory::io)
+  clerestory::model clerestory::solver clerestory::meshing clerestory::io clerestory::pipeline)
 
-set(libraries clerestory_clerestory clerestory_model clerestory_solver clerestory_meshing clerestory_io)
+set(libraries clerestory_clerestory clerestory_model clerestory_solver clerestory_meshing clerestory_io
+  clerestory_pipeline)
 foreach(library ${libraries})
   string(REPLACE "clerestory_" "" name ${library})
   set_target_properties(${library} PROPERTIES EXPORT_NAME ${name})
@@ -21,6 +22,8 @@ install(TARGETS clerestory_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cl
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/clerestory)
 install(DIRECTORY solver DESTINATION ${include_dir} FILES_MATCHING PATTERN "*.h")
 install(FILES ${PROJECT_BINARY_DIR}/generated/solver/model/version.h DESTINATION ${include_dir}/solver/model)
+install(FILES pipeline/observer.h pipeline/settings.h pipeline/solved.h pipeline/solve_scene.h
+  DESTINATION ${include_dir}/pipeline)
 install(FILES meshing/build_patches.h meshing/make_lightmap.h DESTINATION ${include_dir}/meshing)
 install(FILES io/read_scene.h io/read_sensors.h io/write_result.h io/write_sensors.h io/run_report.h
   DESTINATION ${include_dir}/io)

@@ -10,6 +10,7 @@
 #include "solver/model/mesh_report.h"
 #include "solver/model/scene.h"
 #include "solver/model/solution.h"
+#include "solver/model/stage_seconds.h"
 
 namespace clerestory {
 
@@ -31,10 +32,7 @@ struct RunReport {
     std::size_t openings = 0;  ///< gaps through which the sky looks into a room
     unsigned long long rays = 0;
   } counts;
-  struct Seconds {
-    double read = 0, mesh = 0, build = 0, direct = 0, refine = 0, gather = 0, reconstruct = 0, measure = 0, write = 0,
-           total = 0;
-  } seconds;
+  StageSeconds seconds;
   std::size_t peak_memory_bytes = 0;
   std::size_t predicted_memory_bytes = 0;  ///< what the counts let expect
   long iterations = 0;

@@ -15,7 +15,4 @@ namespace clerestory {
 /// returns     E is sized P x channels and zero.
 VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg = 30);
 
-/// Points' E as the area-weighted mean of the patches that share them.
-void average_to_points(const PatchSet& patches, const Field& patch_E, VertexLightmap& lightmap);
-
 }  // namespace clerestory

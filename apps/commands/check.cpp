@@ -2,13 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "pipeline/prepare.h"
+#include "pipeline/scene_checks.h"
+#include "pipeline/wording.h"
+
 #include "apps/commands/commands.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
-#include "apps/scene_checks.h"
 #include "apps/settings.h"
-#include "apps/wording.h"
-#include "solver/lit_sides.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -97,15 +98,11 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();
 
-  auto [patches, repairs] = build_patches(scene, settings.mesh, console.monitor());
-  if (console.interrupted()) return kInterrupted;
-  report.seconds.mesh = console.elapsed() - report.seconds.read;
-  const RayScene rays(patches);
-  const Lights lights = local_lights(scene.lights, patches, rays);
-  const Problem problem{patches, rays, lights};
-  if (has_light(scene)) make_patches(patches, find_lit_sides(problem, settings.solve.seed).wanted);
+  const auto prepared = prepare(scene, settings, console.monitor(), &report.seconds);
+  if (!prepared) return kInterrupted;
+  const auto& [patches, repairs, rays, lights, lit_sides] = *prepared;
   const SensorPlanes sensors = planes_of(scene.sensors);
-  warn_about_places(problem, scene, sensors, console);
+  warn_about_places(prepared->problem(), scene, sensors, console);
 
   console.say(arguments.input + ": " + counted(scene.surfaces.size(), "object") + ", " +
               counted(scene.materials.size(), "material") + ", " + counted(sensors.sensor_count(), "sensor") + ", " +
@@ -114,7 +111,7 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   say_materials(scene, console);
   say_lights(scene, console);
 
-  report.settings = as_figures(settings, arguments.read);
+  report.settings = as_figures(settings, patches.channels, arguments.read);
   report.threads = arguments.common.threads;
   report.repairs = repairs;
   report.counts.triangles = patches.triangle_count();

@@ -7,9 +7,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "pipeline/wording.h"
+
 #include "apps/commands/commands.h"
 #include "apps/run.h"
-#include "apps/wording.h"
 #include "io/atomic_file.h"
 #include "io/run_report.h"
 #include "io/scene_file/nearest_name.h"

@@ -2,15 +2,16 @@
 
 #include <CLI/CLI.hpp>
 
+#include "pipeline/prepare.h"
+#include "pipeline/scene_checks.h"
+#include "pipeline/wording.h"
+
 #include "apps/commands/commands.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
-#include "apps/scene_checks.h"
 #include "apps/settings.h"
-#include "apps/wording.h"
 #include "io/atomic_file.h"
 #include "io/write_result.h"
-#include "solver/lit_sides.h"
 
 namespace clerestory {
 namespace {
@@ -22,14 +23,6 @@ struct Arguments {
   std::string input, output;
 };
 
-/// With light in the scene, the sides it can reach; without, both sides of everything.
-LitSides sides_to_show(const Scene& scene, const PatchSet& patches, std::uint64_t seed) {
-  if (!has_light(scene)) return {std::vector<bool>(2 * patches.triangle_count(), true)};
-  const RayScene rays(patches);
-  const Lights lights = local_lights(scene.lights, patches, rays);
-  return find_lit_sides({patches, rays, lights}, seed);
-}
-
 ExitCode mesh_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.input, arguments.read);
@@ -38,16 +31,14 @@ ExitCode mesh_command(const Arguments& arguments, Console& console) {
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();
 
-  auto [patches, repairs] = build_patches(scene, settings.mesh, console.monitor());
-  if (console.interrupted()) {
+  const auto prepared = prepare(scene, settings, console.monitor(), &report.seconds);
+  if (!prepared) {
     console.warn("interrupted before the mesh was complete; nothing is written.");
     return kInterrupted;
   }
-  report.seconds.mesh = console.elapsed() - report.seconds.read;
-  const LitSides lit = sides_to_show(scene, patches, settings.solve.seed);
-  make_patches(patches, lit.wanted);
+  const auto& [patches, repairs, rays, lights, lit] = *prepared;
 
-  report.settings = as_figures(settings, arguments.read);
+  report.settings = as_figures(settings, patches.channels, arguments.read);
   report.threads = arguments.common.threads;
   report.repairs = repairs;
   report.counts.triangles = patches.triangle_count();

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "solver/form_factors/gauss_legendre.h"
+#include "solver/sampling/gauss_legendre.h"
 
 namespace clerestory {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/form_factors/polygon.h"
+#include "solver/geometry/polygon.h"
 
 namespace clerestory {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "solver/form_factors/contour_exchange.h"
-#include "solver/form_factors/polygon.h"
 #include "solver/form_factors/triangle_quadrature.h"
+#include "solver/geometry/polygon.h"
 
 namespace clerestory {
 namespace {
@@ -86,7 +86,7 @@ bool far_pieces(const Triangle& a, const Triangle& b, int& budget, Take take) {
 }
 
 /// The triangles of a polygon, each clipped by the plane and cut into triangles again.
-std::vector<Triangle> clipped_triangles(std::span<const Vec3> polygon, const Plane& plane, double on_plane) {
+std::vector<Triangle> clipped_triangles(std::span<const Vec3> polygon, const HalfSpace& plane, double on_plane) {
   std::vector<Triangle> pieces;
   for (const Triangle& triangle : triangulate(polygon)) {
     const ClippedTriangle clipped = clip_to_front(triangle, plane, on_plane);
@@ -114,7 +114,8 @@ double exchange_area(std::span<const Vec3> polygon1, std::span<const Vec3> polyg
   const std::vector<Vec3> p1 = moved(polygon1), p2 = moved(polygon2);
   const Vec3 area1 = vector_area(p1), area2 = vector_area(p2);
   if (!(dot(area1, area1) > 0) || !(dot(area2, area2) > 0)) return 0;
-  const Plane plane1 = Plane::through(p1[0], normalized(area1)), plane2 = Plane::through(p2[0], normalized(area2));
+  const HalfSpace plane1 = HalfSpace::through(p1[0], normalized(area1)),
+                  plane2 = HalfSpace::through(p2[0], normalized(area2));
   double span = 0;
   for (const Vec3& x : p1) span = std::max(span, length(x));
   for (const Vec3& x : p2) span = std::max(span, length(x));

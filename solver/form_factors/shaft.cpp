@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "solver/form_factors/polygon.h"
+#include "solver/geometry/polygon.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 
@@ -13,15 +13,12 @@ namespace clerestory {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Box kEmptyBox{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
 /// Least value of dot(normal, x) over the box.
 double least_height(const Box& box, const Vec3& normal) {
   return normal.x * (normal.x > 0 ? box.lower.x : box.upper.x) + normal.y * (normal.y > 0 ? box.lower.y : box.upper.y) +
          normal.z * (normal.z > 0 ? box.lower.z : box.upper.z);
 }
-
-Vec3 centre(const Box& box) { return (box.lower + box.upper) * 0.5; }
 
 double& coordinate(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
@@ -33,7 +30,7 @@ struct BoxShaft {
   std::size_t sides = 0;
 
   BoxShaft(const Box& a, const Box& b) : bounds(a) {
-    bounds.grow(b);
+    bounds.add(b);
     const Box* const boxes[2] = {&a, &b};
     // A slanted side runs parallel to one axis; across it, it joins the same corner of both boxes.
     for (int axis = 0; axis < 3; ++axis) {
@@ -97,17 +94,6 @@ std::vector<Vec3> convex_hull(std::vector<Vec3> points, const Frame& frame) {
 }
 
 }  // namespace
-
-Box Box::around(std::span<const Vec3> points) {
-  Box box = kEmptyBox;
-  for (const Vec3& x : points) box.grow({x, x});
-  return box;
-}
-
-void Box::grow(const Box& other) {
-  lower = {std::min(lower.x, other.lower.x), std::min(lower.y, other.lower.y), std::min(lower.z, other.lower.z)};
-  upper = {std::max(upper.x, other.upper.x), std::max(upper.y, other.upper.y), std::max(upper.z, other.upper.z)};
-}
 
 Blockers::Blockers(const PatchSet& patches) {
   const Box scene = Box::around(patches.vertices);
@@ -233,10 +219,10 @@ std::uint32_t Blockers::build(std::size_t begin, std::size_t end) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   const auto triangles = std::span(triangles_).subspan(begin, end - begin);
-  Box all = kEmptyBox, centres = kEmptyBox;
+  Box all, centres;
   for (const Blocker& b : triangles) {
     const Box box = Box::around(b.corner);
-    all.grow(box), centres.grow({centre(box), centre(box)});
+    all.add(box), centres.add(box.centre());
   }
   nodes_[index].box = all;
   if (triangles.size() == 1) {
@@ -248,7 +234,7 @@ std::uint32_t Blockers::build(std::size_t begin, std::size_t end) {
   const std::size_t half = triangles.size() / 2;
   std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half), triangles.end(),
                    [axis](const Blocker& a, const Blocker& b) {
-                     return centre(Box::around(a.corner))[axis] < centre(Box::around(b.corner))[axis];
+                     return Box::around(a.corner).centre()[axis] < Box::around(b.corner).centre()[axis];
                    });
   build(begin, begin + half);
   const std::uint32_t right = build(begin + half, end);
@@ -282,7 +268,7 @@ PairShaft::PairShaft(std::span<const Vec3, 3> p, const Vec3& normal_p, std::span
   hold(-normal_p, -dot(normal_p, p[0]));
   hold(-normal_q, -dot(normal_q, q[0]));
   bounds_ = Box::around(p);
-  bounds_.grow(Box::around(q));
+  bounds_.add(Box::around(q));
   const auto side_planes = [&](std::span<const Vec3, 3> edges, std::span<const Vec3, 3> corners) {
     for (std::size_t e = 0; e < 3; ++e) {
       const Vec3 start = edges[e], along = edges[(e + 1) % 3] - start, opposite = edges[(e + 2) % 3] - start;

@@ -6,18 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "solver/model/box.h"
 #include "solver/model/patch_set.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
-
-/// Axis-parallel box.
-struct Box {
-  Vec3 lower, upper;
-
-  static Box around(std::span<const Vec3> points);
-  void grow(const Box& other);
-};
 
 /// A triangle that can stand between others.
 struct Blocker {
@@ -84,7 +77,7 @@ class PairShaft {
   bool reached_by(const Blocker& blocker) const;
 
  private:
-  struct HalfSpace {
+  struct Bound {
     Vec3 normal;  ///< the hull lies where dot(normal, x) <= offset
     double offset;
   };
@@ -92,7 +85,7 @@ class PairShaft {
 
   Box bounds_;
   std::array<Vec3, 6> corner_;
-  std::array<HalfSpace, 20> side_;
+  std::array<Bound, 20> side_;
   std::size_t sides_ = 0;
   double touching_;
 };

@@ -1,6 +1,6 @@
 #include "solver/form_factors/triangle_quadrature.h"
 
-#include "solver/form_factors/gauss_legendre.h"
+#include "solver/sampling/gauss_legendre.h"
 
 namespace clerestory {
 namespace {

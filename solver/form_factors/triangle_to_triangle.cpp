@@ -4,8 +4,8 @@
 #include <span>
 
 #include "solver/form_factors/contour_exchange.h"
-#include "solver/form_factors/polygon.h"
 #include "solver/form_factors/polygon_to_polygon.h"
+#include "solver/geometry/polygon.h"
 
 namespace clerestory {
 namespace {

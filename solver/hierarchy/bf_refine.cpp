@@ -6,14 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/closure.h"
 #include "solver/form_factors/polygon_to_polygon.h"
 #include "solver/hierarchy/build_tree.h"
 #include "solver/hierarchy/gather_links.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
+#include "solver/spaces/closure.h"
 
 namespace clerestory {
 namespace {
@@ -154,7 +154,7 @@ BfLinks bf_refine(const Problem& problem, const ElementTree& tree, const Field& 
   BfLinks out;
   Transport& transport = out.transport;
   transport.E_sky = Field(n, problem.patches.channels);
-  Closure closure = measure_closure(problem, kClosureRays, options.seed);
+  Closure closure = measure_closure(problem.patches, problem.rays, kClosureRays, options.seed);
   transport.arrives.resize(n), transport.escapes.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     transport.arrives[i] = static_cast<float>(luminous_mean(closure.arrives[i]));

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "solver/hierarchy/links.h"
+#include "solver/illumination/problem.h"
 #include "solver/model/element_tree.h"
 #include "solver/model/monitor.h"
-#include "solver/problem.h"
 
 namespace clerestory {
 

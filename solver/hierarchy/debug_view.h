@@ -3,7 +3,7 @@
 
 #include "solver/hierarchy/links.h"
 #include "solver/hierarchy/trace_links.h"
-#include "solver/lights/illumination.h"
+#include "solver/illumination/illumination.h"
 #include "solver/model/element_tree.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/solution.h"

@@ -9,7 +9,7 @@
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 namespace {

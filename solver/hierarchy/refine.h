@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "solver/hierarchy/element_mesh.h"
-#include "solver/lights/illumination.h"
+#include "solver/illumination/illumination.h"
 #include "solver/model/monitor.h"
 
 namespace clerestory {

@@ -7,15 +7,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/hierarchy/bundle_net.h"
 #include "solver/hierarchy/gather_links.h"
 #include "solver/hierarchy/receivers.h"
-#include "solver/lights/openings.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
-#include "solver/sampling.h"
+#include "solver/openings/openings.h"
+#include "solver/sampling/bundle_net.h"
+#include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 namespace {
@@ -25,7 +25,8 @@ constexpr double kMostOwed = 0.1;         // of the limit for one link: a row ma
 constexpr int kZones = 6, kSectors = 12;  // parts of the sphere
 constexpr std::size_t kParts = kZones * kSectors;
 constexpr std::size_t kReceiversInBlock = 64;
-constexpr std::size_t kNeighbours = 8;  // hits of a receiver that tell which space it is in
+constexpr std::size_t kMostLinks = 192;  // of a row; more are merged, whatever `uniform` says
+constexpr std::size_t kNeighbours = 8;   // hits of a receiver that tell which space it is in
 
 /// Parts of the sphere that a cluster tells apart: zones of equal height in equal sectors.
 std::uint16_t part_of_sphere(const Vec3& d) {
@@ -292,7 +293,7 @@ class Tracer {
       const std::size_t before = out.links.size();
       double limit = limit_;
       if (last > first) cut(0, first, last, out.links);
-      while (nodes_ && limit_ > 0 && out.links.size() - before > options_.most_links && limit_ < 64 * limit) {
+      while (nodes_ && limit_ > 0 && out.links.size() - before > kMostLinks && limit_ < 64 * limit) {
         limit_ *= 2;
         owed_ = 0;
         out.links.resize(before);
@@ -428,8 +429,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   NodeLight nodes;
   if (B.size() == n) nodes = node_light(tree, B);
   const BundleNet net(options.bundle_rays, stream_key(options.seed, kBundle));
-  const std::vector<Receiver> receivers =
-      choose_receivers(tree, patches, options.cluster_diameter, options.most_receivers);
+  const std::vector<Receiver> receivers = choose_receivers(tree, patches, options.cluster_diameter, kMostReceivers);
   std::array<std::uint32_t, kNeighbours> nobody;
   nobody.fill(PatchId::kNone);
   std::vector<std::array<std::uint32_t, kNeighbours>> neighbours(receivers.size(), nobody);

@@ -5,21 +5,22 @@
 #include <vector>
 
 #include "solver/hierarchy/links.h"
-#include "solver/lights/direct.h"
-#include "solver/lights/illumination.h"
+#include "solver/illumination/direct.h"
+#include "solver/illumination/illumination.h"
 #include "solver/model/element_tree.h"
 #include "solver/model/monitor.h"
 
 namespace clerestory {
 
+/// Where there would be more receivers, wider clusters receive together.
+inline constexpr std::size_t kMostReceivers = 200'000;
+
 struct LinkOptions {
   int bundle_rays = 256;
-  int lamp_rays = 64;           ///< pairs with bright sources, a multiple of 16
+  int lamp_rays = 128;          ///< pairs with bright sources, a multiple of 16
   double uniform = 0.01;        ///< hits are linked at the highest node whose B varies by less than this share of
                                 ///< E_p; 0: at the leaf they met
   double cluster_diameter = 0;  ///< nodes of up to 32 leaves within this receive together [m]
-  std::size_t most_receivers = 200'000;  ///< where there would be more, wider clusters receive together
-  std::size_t most_links = 192;          ///< of a receiver's row; more are merged, whatever `uniform` says
   std::uint64_t seed = 1;
 };
 

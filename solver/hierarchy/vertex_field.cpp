@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "solver/gather_point.h"
+#include "solver/gather/gather_point.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
 
@@ -38,7 +38,7 @@ std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
 class Gatherer {
  public:
   Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options)
-      : light_(illumination(problem, B)),
+      : light_(gather_illumination(problem, B)),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
@@ -56,28 +56,20 @@ class Gatherer {
     field.known.resize(end);
     for (std::size_t p = begin; p < end && pilots_; ++p)
       pilot_of_.push_back(p < plans_.size() ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
-    std::vector<unsigned long long> rays(end - begin, 0);
     constexpr std::size_t kBlock = 1024;
-    for (std::size_t first = begin; first < end; first += kBlock) {
-      if (monitor.should_stop()) return false;
-      monitor.report("vertices", static_cast<double>(first) / static_cast<double>(end));
-      const std::size_t last = std::min(first + kBlock, end);
-      parallel_for(last - first, 16, [&](std::size_t from, std::size_t to) {
-        for (std::size_t p = first + from; p < first + to; ++p)
-          if (is_worth_it(p)) gather_at(p, field, rays[p - begin]);
-      });
-      for (std::size_t p = first; p < last; ++p) field.known[p] = is_worth_it(p);
-    }
-    for (const auto r : rays) field.rays += r;
-    return true;
+    const auto gathered =
+        parallel_blocks(end - begin, kBlock, 16, "vertices", monitor, [&](std::size_t from, std::size_t to) {
+          unsigned long long rays = 0;
+          for (std::size_t p = begin + from; p < begin + to; ++p)
+            if (is_worth_it(p)) gather_at(p, field, rays);
+          return rays;
+        });
+    for (std::size_t p = begin; p < begin + gathered.done; ++p) field.known[p] = is_worth_it(p);
+    field.rays += gathered.rays;
+    return begin + gathered.done == end;
   }
 
  private:
-  static Illumination illumination(const Problem& problem, const Field& B) {
-    Illumination light(problem, B);
-    light.look_at_panels();
-    return light;
-  }
   bool is_worth_it(std::size_t p) const { return p >= worth_.size() || worth_[p]; }
   void gather_at(std::size_t p, VertexField& field, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();

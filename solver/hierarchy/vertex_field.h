@@ -1,20 +1,20 @@
 #pragma once
 // Irradiance at vertices, with more of them where straight lines between them would be wrong.
 
-#include "solver/gather_pattern.h"
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/illumination/problem.h"
 #include "solver/model/monitor.h"
-#include "solver/problem.h"
+#include "solver/sampling/gather_pattern.h"
 
 namespace clerestory {
 
 struct FieldOptions {
-  double tolerance = 0.025;  ///< an element is halved where interpolation may err by more, of the irradiance there [1]
+  double tolerance = 0.05;   ///< an element is halved where interpolation may err by more, of the irradiance there [1]
   double shortest_edge = 0;  ///< no edge up to this length is halved [m]
   /// Points that are gathered. Where the lightmap alone has more, those of the smallest elements are left to the
   /// caller, who knows what their element receives; else no element is halved beyond.
-  std::size_t most_points = 1'000'000;
-  GatherQuality quality{};
+  std::size_t most_points = 400'000;
+  GatherQuality quality;
   std::uint64_t seed = 1;
 };
 

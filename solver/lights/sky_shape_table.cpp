@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "solver/form_factors/gauss_legendre.h"
+#include "solver/sampling/gauss_legendre.h"
 
 namespace clerestory {
 

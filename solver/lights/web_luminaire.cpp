@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/form_factors/gauss_legendre.h"
+#include "solver/sampling/gauss_legendre.h"
 
 namespace clerestory {
 namespace {

@@ -8,18 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "solver/form_factors/form_factor_matrix.h"
+#include "solver/methods/form_factor_matrix.h"
 #include "solver/model/monitor.h"
 #include "solver/model/patch_set.h"
 #include "solver/model/solution.h"
 
 namespace clerestory {
 
+inline constexpr long kMostSweeps = 1'000;  ///< safety net; reaching it sets StopReason::iteration_limit
+
 struct GatherOptions {
   /// Stop when sum A |M + rho E - B| of every channel is below this share of the flux sum A (M + rho E_direct) [1], >
   /// 0.
   double residual = 1e-7;
-  int max_sweeps = 1'000;  ///< safety net; reaching it sets StopReason::iteration_limit
 };
 
 /// Radiosities under way, channel by channel, with the residual r = M + rho (E_direct + F B) - B.
@@ -112,7 +113,7 @@ Solution FullMatrixSystem::iterate(std::string method, const GatherOptions& opti
       stop = why_stopped(monitor);
       break;
     }
-    if (sweeps >= options.max_sweeps) break;
+    if (sweeps >= kMostSweeps) break;
     // Digits gained of those wanted.
     const double wanted = std::log(options.residual), gained = std::log(std::min(1.0, left));
     monitor.report(method, wanted < 0 ? std::min(1.0, gained / wanted) : 0);

@@ -7,16 +7,16 @@
 #include <numeric>
 #include <span>
 
-#include "solver/closure.h"
 #include "solver/hierarchy/balance.h"
 #include "solver/hierarchy/bf_refine.h"
 #include "solver/hierarchy/build_tree.h"
 #include "solver/hierarchy/debug_view.h"
 #include "solver/hierarchy/refine.h"
 #include "solver/hierarchy/trace_links.h"
-#include "solver/lights/direct.h"
+#include "solver/illumination/direct.h"
 #include "solver/methods/progressive.h"
 #include "solver/model/units.h"
+#include "solver/spaces/closure.h"
 
 namespace clerestory {
 namespace {
@@ -49,7 +49,7 @@ Quality full(const HierarchyOptions& o, std::size_t leaves) {
   int bundle = o.bundle_rays, pairs = o.lamp_rays;
   for (std::size_t n = leaves; n < kFewLeaves && bundle < kMostOfOne; n *= 2) bundle *= 2, pairs *= 2;
   return {{.bundle_rays = bundle, .lamp_rays = pairs, .seed = o.seed},
-          {.lamp_rays = 64, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
+          {.lamp_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
           o.residual};
 }
 
@@ -146,7 +146,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   const ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
-  const auto receivers = static_cast<double>(std::min(n, quality.links.most_receivers));
+  const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.lamp_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;
@@ -206,7 +206,7 @@ HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh
   const bool late = ambient_only || monitor.should_stop();
   const DirectLight direct =
       direct_light(light, {.lamp_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
-  const Closure closure = measure_closure(problem, late ? 8 : 16, options.seed);
+  const Closure closure = measure_closure(problem.patches, problem.rays, late ? 8 : 16, options.seed);
   out.solution = shoot(
       problem, direct, closure,
       {.stop_fraction = 0.03, .rays_per_patch = 32, .max_rounds = late ? 0 : 1000, .seed = options.seed}, monitor);
@@ -273,7 +273,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   }
   if (!going) {
     out.solution.stop = why_stopped(monitor);
-    if (!log.empty()) out.solution.shown = log.back();
+    if (!log.empty()) out.solution.stopped_at = log.back();
     log.push_back("stopped early");
   }
   if (shown.size() != mesh.leaf_count()) {  // stopped after more were halved

@@ -4,10 +4,10 @@
 #include <cstdint>
 
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/illumination/problem.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
-#include "solver/problem.h"
 
 namespace clerestory {
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "solver/methods/path_tracer.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
-#include "solver/sampling.h"
+#include "solver/paths/path_tracer.h"
+#include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 

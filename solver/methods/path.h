@@ -1,10 +1,10 @@
 #pragma once
 // Path tracing as a method: every patch and point on its own, without bias. Slow, and the judge of the others.
 
-#include "solver/closure.h"
-#include "solver/lights/direct.h"
+#include "solver/illumination/direct.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
+#include "solver/spaces/closure.h"
 
 namespace clerestory {
 

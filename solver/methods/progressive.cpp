@@ -7,13 +7,16 @@
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 namespace {
 
 constexpr std::uint64_t kShotRays = 0x41;
 constexpr std::uint32_t kLeastRays = 16, kMostRaysAPiece = 4096;
+/// The ambient is shot for good when it leaves less than this share of what is unshot. Higher saves rounds but brings
+/// noise to dim corners: they get it, and give it back.
+constexpr double kAmbientWorthIt = 0.3;
 
 /// Rays first .. first + count - 1 of patch `from`, each carrying `flux` [W].
 struct Piece {
@@ -72,14 +75,14 @@ void shoot_ambient(Unshot& light, const Closure& closure, const std::vector<Spec
   }
 }
 
-/// The same, when it leaves less than the share `worth_it` of what is unshot.
-bool shoot_ambient_if_worth_it(Unshot& light, const Closure& closure, double worth_it) {
+/// The same, when that is worth it.
+bool shoot_ambient_if_worth_it(Unshot& light, const Closure& closure) {
   const PatchSet& p = light.patches;
   const std::vector<Spectrum> e = ambient_radiosity(light, closure);
   double left = 0;
   for (std::size_t i = 0; i < p.patch_count(); ++i)
     left += p.area[i] * magnitude(unshot_after_ambient(light, closure, e, i));
-  if (!(left < worth_it * light.flux())) return false;
+  if (!(left < kAmbientWorthIt * light.flux())) return false;
   shoot_ambient(light, closure, e);
   return true;
 }
@@ -181,7 +184,7 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
     }
     monitor.report("shoot", std::log(first_residual / residual) / std::log(first_residual / options.stop_fraction));
 
-    const bool uniform = shoot_ambient_if_worth_it(light, closure, options.ambient_worth_it);
+    const bool uniform = shoot_ambient_if_worth_it(light, closure);
     if (!uniform) {
       std::vector<Piece> pieces;
       std::vector<std::size_t> begin{0};

@@ -3,22 +3,20 @@
 
 #include <cstdint>
 
-#include "solver/closure.h"
-#include "solver/lights/direct.h"
+#include "solver/illumination/direct.h"
+#include "solver/illumination/problem.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
-#include "solver/problem.h"
+#include "solver/spaces/closure.h"
 
 namespace clerestory {
 
 struct ShootOptions {
-  double stop_fraction = 3e-3;    ///< stop when unshot flux / emitted flux is below this [1], > 0
-  double rays_per_patch = 256;    ///< rays spent on the emitted flux once, for each patch of the scene; sets the noise
-  double batch_share = 0.25;      ///< patches shoot together that have at least this share of the largest unshot flux;
-                                  ///< 1: one patch a round, as the paper has it
-  double ambient_worth_it = 0.3;  ///< the ambient is shot for good when it leaves less than this share unshot. Higher
-                                  ///< saves rounds but brings noise to dim corners: they get it, and give it back
-  int max_rounds = 10'000;        ///< safety net; reaching it sets StopReason::iteration_limit
+  double stop_fraction = 3e-3;  ///< stop when unshot flux / emitted flux is below this [1], > 0
+  double rays_per_patch = 256;  ///< rays spent on the emitted flux once, for each patch of the scene; sets the noise
+  double batch_share = 0.25;    ///< patches shoot together that have at least this share of the largest unshot flux;
+                                ///< 1: one patch a round, as the paper has it
+  int max_rounds = 10'000;      ///< safety net; reaching it sets StopReason::iteration_limit
   std::uint64_t seed = 1;
 };
 

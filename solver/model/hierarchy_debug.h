@@ -18,7 +18,7 @@ struct DebugShapes {
   std::vector<std::pair<std::string, std::vector<double>>> values;
 };
 
-/// Filled by hierarchical() and solve_hierarchical() when asked for; empty where a run was stopped before.
+/// Filled by hierarchical() and hierarchical_field() when asked for; empty where a run was stopped before.
 struct HierarchyDebug {
   /// Leaf elements of the transport. level: halvings since the patch; cluster: node of the smallest cluster around it;
   /// links: of its receiver; receiver: number of that, in the order of the tree; irradiance: luminous mean [W/m2].

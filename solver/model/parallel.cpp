@@ -1,5 +1,7 @@
 #include "solver/model/parallel.h"
 
+#include <algorithm>
+#include <atomic>
 #include <memory>
 
 #include <tbb/blocked_range.h>
@@ -30,6 +32,20 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) { body(range.begin(), range.end()); },
       tbb::simple_partitioner());
+}
+
+Blocks parallel_blocks(std::size_t n, std::size_t block, std::size_t grain, std::string_view stage,
+                       const Monitor& monitor,
+                       const std::function<unsigned long long(std::size_t, std::size_t)>& body) {
+  std::atomic<unsigned long long> rays = 0;
+  std::size_t done = 0;
+  while (done < n && !monitor.should_stop()) {
+    monitor.report(stage, static_cast<double>(done) / static_cast<double>(n));
+    const std::size_t count = std::min(block, n - done);
+    parallel_for(count, grain, [&](std::size_t from, std::size_t to) { rays += body(done + from, done + to); });
+    done += count;
+  }
+  return {done, rays};
 }
 
 }  // namespace clerestory

@@ -3,6 +3,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <string_view>
+
+#include "solver/model/monitor.h"
 
 namespace clerestory {
 
@@ -17,5 +20,15 @@ void on_one_thread(const std::function<void()>& body);
 /// only to what their indices own, so the result does not depend on how ranges fall on threads.
 void parallel_for(std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// The same in blocks of `block`, one after another; before each, progress of the stage is reported and the monitor
+/// asked whether to go on. Bodies return the rays they sent.
+struct Blocks {
+  std::size_t done = 0;  ///< the first so many indices were visited; less than n: the monitor stopped it
+  unsigned long long rays = 0;
+};
+Blocks parallel_blocks(std::size_t n, std::size_t block, std::size_t grain, std::string_view stage,
+                       const Monitor& monitor,
+                       const std::function<unsigned long long(std::size_t begin, std::size_t end)>& body);
 
 }  // namespace clerestory

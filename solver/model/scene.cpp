@@ -5,40 +5,49 @@
 namespace clerestory {
 namespace {
 
-/// Calls visit(Spectrum&) for every colour of the scene.
-template <class AnyScene, class Visit>
-void for_each_colour(AnyScene& scene, const Visit& visit) {
-  for (auto& m : scene.materials) {
+// Call visit(Spectrum&) for every colour.
+template <class Materials, class Visit>
+void for_each_colour_of_materials(Materials& materials, const Visit& visit) {
+  for (auto& m : materials) {
     visit(m.reflectance);
     visit(m.transmittance);
     visit(m.exitance);
     if (m.total_power) visit(*m.total_power);
   }
-  for (auto& l : scene.lights.points) visit(l.power);
-  for (auto& l : scene.lights.spots) visit(l.intensity);
-  for (auto& l : scene.lights.webs) visit(l.scale);
-  for (auto& s : scene.lights.suns) visit(s.normal_irradiance);
-  if (scene.lights.sky) visit(scene.lights.sky->horizontal_irradiance);
 }
+template <class AnyLights, class Visit>
+void for_each_colour_of_lights(AnyLights& lights, const Visit& visit) {
+  for (auto& l : lights.points) visit(l.power);
+  for (auto& l : lights.spots) visit(l.intensity);
+  for (auto& l : lights.webs) visit(l.scale);
+  for (auto& s : lights.suns) visit(s.normal_irradiance);
+  if (lights.sky) visit(lights.sky->horizontal_irradiance);
+}
+
+const auto kToGrey = [](Spectrum& s) { s = Spectrum(luminous_mean(s)); };
 
 }  // namespace
 
 int Scene::channels() const {
   bool grey = true;
-  for_each_colour(*this, [&](const Spectrum& s) { grey = grey && s.is_grey(); });
+  const auto look_at = [&](const Spectrum& s) { grey = grey && s.is_grey(); };
+  for_each_colour_of_materials(materials, look_at);
+  for_each_colour_of_lights(lights, look_at);
   if (lights.sky && lights.sky->image) grey = grey && lights.sky->image->is_grey();
   return grey ? 1 : 3;
 }
 
-void make_grey(Scene& scene) {
-  for_each_colour(scene, [](Spectrum& s) { s = Spectrum(luminous_mean(s)); });
-  if (!scene.lights.sky || !scene.lights.sky->image) return;
-  SkyImage image = *scene.lights.sky->image;
+void make_grey(std::vector<Material>& materials) { for_each_colour_of_materials(materials, kToGrey); }
+
+void make_grey(Lights& lights) {
+  for_each_colour_of_lights(lights, kToGrey);
+  if (!lights.sky || !lights.sky->image) return;
+  SkyImage image = *lights.sky->image;
   for (std::size_t i = 0; i < image.value.size(); i += 3) {
     const double mean = luminous_mean({image.value[i], image.value[i + 1], image.value[i + 2]});
     for (std::size_t k = i; k < i + 3; ++k) image.value[k] = static_cast<float>(mean);
   }
-  scene.lights.sky->image = std::make_shared<const SkyImage>(std::move(image));
+  lights.sky->image = std::make_shared<const SkyImage>(std::move(image));
 }
 
 }  // namespace clerestory

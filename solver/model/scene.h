@@ -73,7 +73,8 @@ struct Scene {
   int channels() const;
 };
 
-/// Every colour of the scene replaced by its luminous mean.
-void make_grey(Scene& scene);
+/// Every colour replaced by its luminous mean.
+void make_grey(std::vector<Material>& materials);
+void make_grey(Lights& lights);
 
 }  // namespace clerestory

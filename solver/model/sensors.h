@@ -37,6 +37,13 @@ inline constexpr std::size_t kCylinderPlanes = 21;
 /// How many planes a sensor of this kind takes.
 constexpr std::size_t planes_a_sensor(SensorKind kind) { return kind == SensorKind::cylindrical ? kCylinderPlanes : 1; }
 
+/// The points of all sets, one set after the other.
+inline std::vector<SensorPoint> all_sensor_points(const std::vector<SensorSet>& sets) {
+  std::vector<SensorPoint> points;
+  for (const SensorSet& set : sets) points.insert(points.end(), set.points.begin(), set.points.end());
+  return points;
+}
+
 /// The illuminances of one set in a few figures.
 struct SensorSummary {
   std::string name;

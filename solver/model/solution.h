@@ -38,7 +38,7 @@ struct Solution {
   std::size_t clusters = 0, links = 0;  ///< of the hierarchy, where there is one
   double flux_per_ray = 0;              ///< carried by a ray of a shot; sets the noise of shooting [W]
   std::vector<std::string> log;         ///< a line a round, for --verbose
-  std::string shown;  ///< of a run that was stopped: which of its rounds the result is, in the log's words
+  std::string stopped_at;  ///< of a run that was stopped: which of its rounds the result is, in the log's words
 };
 
 }  // namespace clerestory

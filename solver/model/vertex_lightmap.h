@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/model/channels.h"
+#include "solver/model/patch_set.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
@@ -30,5 +31,8 @@ struct VertexLightmap {
   std::vector<Vec3> sample_normal;          ///< S, unit, of that facet
   std::vector<double> sample_weight;        ///< S
 };
+
+/// Points' E as the area-weighted mean of the patches that share them.
+void average_to_points(const PatchSet& patches, const Field& patch_E, VertexLightmap& lightmap);
 
 }  // namespace clerestory

@@ -9,8 +9,8 @@
 
 #include <embree3/rtcore.h>
 
-#include "solver/form_factors/form_factor_matrix.h"
 #include "solver/form_factors/polygon_to_polygon.h"
+#include "solver/methods/form_factor_matrix.h"
 #include "solver/model/random_stream.h"
 #include "tests/support/room_with_blocks.h"
 

@@ -20,11 +20,11 @@
 #include "io/read_sensors.h"
 #include "meshing/build_patches.h"
 #include "solver/lights/sun.h"
-#include "solver/lit_sides.h"
-#include "solver/methods/path_tracer.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
-#include "solver/sampling.h"
+#include "solver/paths/path_tracer.h"
+#include "solver/sampling/unit_square.h"
+#include "solver/spaces/lit_sides.h"
 
 namespace clerestory {
 namespace {

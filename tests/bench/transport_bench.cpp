@@ -7,9 +7,9 @@
 #include <ctime>
 
 #include "solver/methods/path.h"
-#include "solver/methods/path_tracer.h"
 #include "solver/methods/progressive.h"
 #include "solver/model/parallel.h"
+#include "solver/paths/path_tracer.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {
@@ -66,7 +66,7 @@ int run() {
     set_thread_count(threads);
     const double start = seconds();
     const DirectLight dark = direct_light(light, {});
-    Solution s = shoot(problem, dark, measure_closure(problem, 64, 1), {.stop_fraction = 1e-2});
+    Solution s = shoot(problem, dark, measure_closure(problem.patches, problem.rays, 64, 1), {.stop_fraction = 1e-2});
     time = seconds() - start;
     return s;
   };
@@ -82,8 +82,9 @@ int run() {
 
   set_thread_count(2);
   const double start = seconds();
-  const Solution reference = path_trace(light, {Field(patches.patch_count(), 1), {}, 0},
-                                        measure_closure(problem, 64, 1), {.paths = 1024, .seed = 7});
+  const Solution reference =
+      path_trace(light, {Field(patches.patch_count(), 1), {}, 0}, measure_closure(problem.patches, problem.rays, 64, 1),
+                 {.paths = 1024, .seed = 7});
   const double path_time = seconds() - start;
   double difference = 0, noise = 0, mean = 0, area = 0;
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "solver/hierarchy/leaves_behind.h"
-#include "solver/lit_sides.h"
 #include "solver/methods/hierarchical.h"
-#include "solver/solve.h"
+#include "solver/run/solve.h"
+#include "solver/spaces/lit_sides.h"
 #include "tests/support/room_with_blocks.h"
 #include "tests/support/unjoined_lightmap.h"
 
@@ -24,7 +24,7 @@ struct Result {
 Result solve_by(Method method, const PatchSet& patches, const Lights& lights) {
   const RayScene rays(patches);
   const Problem problem{patches, rays, lights};
-  if (method != Method::hierarchical) return {patches, solve(problem, {.method = method})};
+  if (method != Method::hierarchical) return {patches, solve_on_patches(problem, {.method = method})};
   const VertexLightmap map = test::unjoined_lightmap(patches);
   ElementMesh mesh(patches, map);
   HierarchicalSolution solved = hierarchical(problem, mesh, {.shortest_edge = 0.02});

@@ -5,13 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "solver/form_factors/point_to_polygon.h"
-#include "solver/gather_point.h"
-#include "solver/lights/light_sampler.h"
+#include "solver/gather/gather_point.h"
+#include "solver/illumination/light_sampler.h"
 #include "solver/methods/hierarchical.h"
-#include "solver/methods/path_tracer.h"
 #include "solver/model/error.h"
-#include "solver/solve.h"
+#include "solver/paths/path_tracer.h"
+#include "solver/run/solve.h"
 #include "solver/visibility/glass_sheet.h"
+#include "tests/support/gather_quality.h"
 #include "tests/support/room_with_blocks.h"
 #include "tests/support/unjoined_lightmap.h"
 
@@ -98,8 +99,9 @@ TEST(Mirror, ShowsAGlowingPatchAsItsImage) {
   const Illumination light(problem, patches.M);
   unsigned long long traced = 0;
   // 16,384 rays in strata of which a twentieth meets the image's edge.
-  EXPECT_NEAR(gather_point(light, p, n, GatherPattern({.bundle = {16, 16384, 16384}}, 1), traced).E[0] / exact, 1,
-              0.01);
+  EXPECT_NEAR(
+      gather_point(light, p, n, GatherPattern(test::gather_quality({16, 16384, 16384}), 1), traced).E[0] / exact, 1,
+      0.01);
   const PathEstimate paths = trace_paths_at_point(Illumination(problem), p, n, 1, 65'536, traced);
   EXPECT_NEAR(paths.E[0], exact, 4 * paths.std_error[0]);
 }
@@ -121,7 +123,7 @@ Solution solve_by(Method method, const PatchSet& patches, PatchSet& solved_on) {
   const Lights lights = with_mirror_images(lamps, rays);
   const Problem problem{patches, rays, lights};
   solved_on = patches;
-  if (method != Method::hierarchical) return solve(problem, {.method = method});
+  if (method != Method::hierarchical) return solve_on_patches(problem, {.method = method});
   const VertexLightmap map = test::unjoined_lightmap(patches);
   ElementMesh mesh(patches, map);
   HierarchicalSolution solved = hierarchical(problem, mesh, {.shortest_edge = 0.05});

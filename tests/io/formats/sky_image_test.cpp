@@ -111,7 +111,7 @@ TEST_F(SkyImageFile, OfAGreySceneIsGrey) {
   paint("sky.exr", 4, 2, 3, pixels);
   Scene scene = read_scene(with(R"({ "image": "sky.exr" })"));
   EXPECT_EQ(scene.channels(), 3);
-  make_grey(scene);
+  make_grey(scene.lights);
   EXPECT_EQ(scene.channels(), 1);
   EXPECT_NEAR(scene.lights.sky->image->pixel(0, 0)[1], 0.2651 + (0.6701 + 0.0648) / 179, 1e-6);
 }

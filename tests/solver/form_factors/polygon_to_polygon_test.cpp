@@ -8,7 +8,7 @@
 
 #include "solver/form_factors/contour_exchange.h"
 #include "solver/form_factors/point_to_polygon.h"
-#include "solver/form_factors/polygon.h"
+#include "solver/geometry/polygon.h"
 #include "solver/model/random_stream.h"
 #include "tests/solver/form_factors/reference_rows.h"
 
@@ -136,7 +136,7 @@ TEST(ContourExchange, ClosedFormsOfEdgePairsAgreeWithTanhSinhQuadrature) {
     for (Vec3& x : b) x = b[0] + (x - b[0]) * scale;
     if (vector_area(a).z < 0) std::swap(a[1], a[2]);
     if (dot(vector_area(b), a[0] - b[0]) < 0) std::swap(b[1], b[2]);
-    const Polygon front = clip_to_front(a, Plane::through(b[0], normalized(vector_area(b))), 1e-14);
+    const Polygon front = clip_to_front(a, HalfSpace::through(b[0], normalized(vector_area(b))), 1e-14);
     if (front.empty()) continue;
     double quadrature = 0;
     for (std::size_t i = 0; i < front.size(); ++i)

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/form_factors/polygon.h"
 #include "solver/form_factors/polygon_to_polygon.h"
+#include "solver/geometry/polygon.h"
 #include "solver/model/random_stream.h"
 #include "tests/solver/form_factors/reference_rows.h"
 #include "tests/support/room_with_blocks.h"

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/form_factors/polygon.h"
 #include "solver/form_factors/polygon_to_polygon.h"
+#include "solver/geometry/polygon.h"
 #include "solver/model/random_stream.h"
 
 namespace clerestory {

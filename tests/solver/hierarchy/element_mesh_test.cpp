@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/model/random_stream.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
 #include "tests/solver/hierarchy/field_scenes.h"
 
 namespace clerestory {

@@ -4,16 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/gather_point.h"
+#include "solver/gather/gather_point.h"
 #include "solver/model/parallel.h"
 #include "tests/solver/hierarchy/field_scenes.h"
+#include "tests/support/gather_quality.h"
 
 namespace clerestory {
 namespace {
 
 using testing::MeshedRoom;
 
-constexpr GatherQuality kFew{.bundle = {16, 256, 256}, .lamp_rays = 256};
+constexpr GatherQuality kFew = test::gather_quality({16, 256, 256}, 256);
 
 Field emission(const PatchSet& patches) { return patches.M; }
 

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/lights/direct.h"
+#include "solver/illumination/direct.h"
 #include "solver/lights/point_lights.h"
 #include "solver/lights/sky.h"
 #include "solver/lights/sun.h"
 #include "solver/model/random_stream.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {

@@ -10,7 +10,7 @@
 #include "solver/model/perez.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/solar_position.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
 #include "tests/support/sky_irradiance.h"
 #include "tests/support/sky_rows.h"
 

@@ -6,12 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "solver/form_factors/point_to_polygon.h"
-#include "solver/lights/direct.h"
-#include "solver/lights/light_sampler.h"
+#include "solver/illumination/direct.h"
+#include "solver/illumination/light_sampler.h"
 #include "solver/lights/point_lights.h"
-#include "solver/lit_sides.h"
 #include "solver/model/random_stream.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
+#include "solver/spaces/lit_sides.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {

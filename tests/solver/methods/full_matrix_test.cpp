@@ -148,7 +148,7 @@ TEST_P(FullMatrixMethod, ReturnsWhatIsThereWhenInterrupted) {
   const FormFactorMatrix F = form_factor_matrix(patches, RayScene(patches));
   const std::atomic<bool> interrupted{true};
   Monitor monitor;
-  monitor.interrupted = &interrupted;
+  monitor.interrupted = [&] { return interrupted.load(); };
   PatchSet uneven = patches;
   uneven.M.at(0, 0) = 100;
   const Solution s = solve(uneven, F, Field(patches.patch_count(), 1), monitor);
@@ -175,7 +175,7 @@ TEST_P(FullMatrixMethod, WhatAStoppedMatrixCannotPlaceHasNotEscaped) {
   for (const double share : {0.0, 0.3, 0.9}) {
     std::atomic<bool> interrupted{false};
     Monitor monitor;
-    monitor.interrupted = &interrupted;
+    monitor.interrupted = [&] { return interrupted.load(); };
     monitor.progress = [&](std::string_view, double done) { interrupted = interrupted || done >= share; };
     const FormFactorMatrix F = form_factor_matrix(patches, RayScene(patches), {}, monitor);
     ASSERT_FALSE(F.complete);

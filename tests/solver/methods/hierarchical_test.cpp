@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/form_factors/form_factor_matrix.h"
+#include "solver/methods/form_factor_matrix.h"
 #include "solver/methods/gauss_seidel.h"
 #include "solver/methods/path.h"
 #include "solver/model/parallel.h"
@@ -50,7 +50,8 @@ Solution paths(const Room& room, const PatchSet& leaves, int count) {
   const Problem problem{leaves, room.rays, room.lights};
   DirectLight none;
   none.E = Field(leaves.patch_count(), leaves.channels);
-  return path_trace(Illumination(problem), none, measure_closure(problem, 16, 1), {.paths = count, .seed = 99});
+  return path_trace(Illumination(problem), none, measure_closure(problem.patches, problem.rays, 16, 1),
+                    {.paths = count, .seed = 99});
 }
 
 /// A room with two blocks and a lamp 12 mm under its ceiling, black on its back.
@@ -252,7 +253,7 @@ TEST(Hierarchical, StoppedBeforeItsFirstRoundItGivesTheAmbientEstimateAndSaysSo)
   const Room room(lamp_room(0.5, 6));
   const std::atomic<bool> stop{true};
   Monitor monitor;
-  monitor.interrupted = &stop;
+  monitor.interrupted = [&] { return stop.load(); };
   const HierarchicalSolution h = room.solve({}, monitor);
   EXPECT_EQ(h.solution.stop, StopReason::interrupted);
   ASSERT_EQ(h.solution.E.size(), h.elements.patch_count());
@@ -267,7 +268,7 @@ TEST(Hierarchical, StoppedAfterElementsWereHalvedTheHalvesShowWhatWasFoundForThe
   const std::size_t before = mesh.leaf_count();
   std::atomic<bool> stop = false;
   Monitor monitor;
-  monitor.interrupted = &stop;
+  monitor.interrupted = [&] { return stop.load(); };
   monitor.progress = [&](std::string_view, double) { stop = mesh.leaf_count() > before; };
   const HierarchicalSolution h = hierarchical(room.problem, mesh, {}, monitor);
   ASSERT_GT(mesh.leaf_count(), before);

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/lit_sides.h"
 #include "solver/methods/path.h"
-#include "solver/methods/path_tracer.h"
 #include "solver/methods/progressive.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
-#include "solver/solve.h"
+#include "solver/paths/path_tracer.h"
+#include "solver/run/solve.h"
+#include "solver/spaces/lit_sides.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {
@@ -61,7 +61,7 @@ struct Prepared {
 
 Solution shoot_room(const Prepared& room, const ShootOptions& options) {
   const DirectLight dark = direct_light(Illumination(room.problem), {});
-  return shoot(room.problem, dark, measure_closure(room.problem, 64, 1), options);
+  return shoot(room.problem, dark, measure_closure(room.patches, room.rays, 64, 1), options);
 }
 
 TEST(Shoot, AmbientMakesTheMeanExactAfterEveryRoundInAClosedRoomOfOneReflectance) {
@@ -139,10 +139,11 @@ TEST(Shoot, StoppedWithinARoundKeepsTheLightItDidNotShoot) {
   const Prepared room(cube(0.5));
   std::atomic<bool> interrupted{false};
   Monitor monitor;
-  monitor.interrupted = &interrupted;
+  monitor.interrupted = [&] { return interrupted.load(); };
   monitor.progress = [&](std::string_view, double) { interrupted = true; };
   const DirectLight dark = direct_light(Illumination(room.problem), {});
-  const Solution s = shoot(room.problem, dark, measure_closure(room.problem, 64, 1), {.rays_per_patch = 4096}, monitor);
+  const Solution s =
+      shoot(room.problem, dark, measure_closure(room.patches, room.rays, 64, 1), {.rays_per_patch = 4096}, monitor);
   EXPECT_EQ(s.stop, StopReason::interrupted);
   EXPECT_LT(s.rays, 2'300'000ull);
   EXPECT_NEAR(s.energy.imbalance(), 0, 1e-9);
@@ -166,8 +167,8 @@ TEST(Shoot, ErrorFallsWithTheRaysAtLeastAsFastAsRandomSampling) {
   // independent rays; the floor is the reference's own noise of about 0.7 %).
   const Prepared room(cube(0.5, 4));
   const Illumination light(room.problem);
-  const Solution reference =
-      path_trace(light, direct_light(light, {}), measure_closure(room.problem, 64, 1), {.paths = 16384, .seed = 9});
+  const Solution reference = path_trace(light, direct_light(light, {}), measure_closure(room.patches, room.rays, 64, 1),
+                                        {.paths = 16384, .seed = 9});
   const auto rms = [&](double rays) {
     const Solution s = shoot_room(room, {.stop_fraction = 1e-4, .rays_per_patch = rays});
     double sum = 0;
@@ -184,7 +185,8 @@ TEST(Path, AgreesWithTheExactMeanWithinItsStandardError) {
   for (const double rho : {0.0, 0.5, 0.9}) {
     const Prepared room(cube(rho));
     const Illumination light(room.problem);
-    const Solution s = path_trace(light, direct_light(light, {}), measure_closure(room.problem, 64, 1), {.paths = 256});
+    const Solution s =
+        path_trace(light, direct_light(light, {}), measure_closure(room.patches, room.rays, 64, 1), {.paths = 256});
     double variance = 0;
     for (std::size_t i = 0; i < room.patches.patch_count(); ++i)
       variance += std::pow(room.patches.area[i] * s.std_error[i][0] / room.patches.total_area(), 2);

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "solver/lights/sky.h"
-#include "solver/sampling.h"
-#include "solver/solve.h"
+#include "solver/run/solve.h"
+#include "solver/sampling/unit_square.h"
 #include "solver/visibility/glass_sheet.h"
 #include "solver/visibility/ray_scene.h"
 #include "tests/support/cie171_rows.h"
@@ -171,7 +171,7 @@ TEST_P(PaneInABox, TakesWhatItDoesNotPass) {
   const PatchSet patches = b.build();
   const RayScene rays(patches);
   const Lights none;
-  const Solution s = solve({patches, rays, none}, {.method = GetParam()});
+  const Solution s = solve_on_patches({patches, rays, none}, {.method = GetParam()});
   double walls = 0;
   for (std::size_t i = 0; i < patches.patch_count(); ++i)
     walls += patches.area[i] * (1 - patches.rho[i][0]) * s.E[i][0];

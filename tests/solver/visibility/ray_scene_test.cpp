@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/model/random_stream.h"
-#include "solver/sampling.h"
+#include "solver/sampling/unit_square.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {

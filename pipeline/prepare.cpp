@@ -1,0 +1,102 @@
+#include "pipeline/prepare.h"
+
+#include <limits>
+#include <utility>
+
+#include "pipeline/lap.h"
+#include "pipeline/scene_checks.h"
+#include "pipeline/wording.h"
+
+#include "meshing/build_patches.h"
+#include "meshing/make_lightmap.h"
+#include "solver/model/error.h"
+#include "solver/run/memory_estimate.h"
+
+namespace clerestory {
+namespace {
+
+LitSides all_sides(const PatchSet& patches) { return {std::vector<bool>(2 * patches.triangle_count(), true)}; }
+
+std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
+                                   const Monitor& monitor, StageSeconds& seconds) {
+  Lap lap;
+  MeshedScene meshed = build_patches(scene,
+                                     {.max_element = settings.max_element,
+                                      .target_triangles = target_triangles(settings.solve),
+                                      .fit_triangles = fit_triangles},
+                                     monitor);
+  PatchSet& patches = meshed.patches;
+  patches.channels = settings.channels.value_or(scene.channels());
+  lap.add_to(seconds.mesh);
+  if (monitor.is_interrupted()) return {};
+
+  Lights lights = scene.lights;
+  if (patches.channels == 1) make_grey(patches.materials), make_grey(lights);
+  RayScene rays(patches);
+  Prepared p{std::move(patches), meshed.report, std::move(rays), {}, {}};
+  p.lights = local_lights(lights, p.patches, p.rays);
+  p.lit_sides = has_light(scene) ? find_lit_sides(p.problem(), settings.solve.seed, monitor) : all_sides(p.patches);
+  make_patches(p.patches, p.lit_sides.wanted);
+  lap.add_to(seconds.build);
+  return p;
+}
+
+/// Memory that a limit leaves for the solve, when the model has been read.
+std::size_t memory_after_reading(std::size_t limit, const MeshReport& repairs) {
+  const std::size_t reading = predicted_memory({repairs.input_triangles}) - predicted_memory({});
+  return limit > reading ? limit - reading : 1;
+}
+
+[[noreturn]] void refuse_memory(const Scene& scene, std::size_t needed, std::size_t limit) {
+  throw InputError(scene.file + ": needs about " + bytes(needed) + ", more than the memory limit of " + bytes(limit) +
+                   "; raise --memory-limit, or leave out detail of the model.");
+}
+
+std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, const Scene& scene,
+                                           StageSeconds& seconds) {
+  if (!prepared) return {};
+  if (prepared->patches.patch_count() == 0)
+    throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
+  Lap lap;
+  VertexLightmap map = make_lightmap(prepared->patches);
+  lap.add_to(seconds.build);
+  return PreparedToSolve{std::move(*prepared), std::move(map)};
+}
+
+}  // namespace
+
+std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, const Monitor& monitor,
+                                StageSeconds* seconds) {
+  StageSeconds nobody_asks;
+  return prepare_in({}, scene, settings, monitor, seconds ? *seconds : nobody_asks);
+}
+
+std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& settings, Observer& observer,
+                                                const Monitor& monitor, StageSeconds& seconds) {
+  if (!settings.memory_limit) return with_points(prepare(scene, settings, monitor, &seconds), scene, seconds);
+  const std::size_t limit = *settings.memory_limit, faces = scene.polygons.face_count();
+  const double asked = settings.max_element.value_or(0), wanted = target_triangles(settings.solve);
+  std::size_t fit = triangles_that_fit(faces, limit);
+  if (fit == 0) refuse_memory(scene, least_memory({faces, faces, faces, faces, faces}), limit);
+  for (std::size_t last = std::numeric_limits<std::size_t>::max();; fit /= 2) {
+    auto p = with_points(prepare_in(static_cast<double>(fit), scene, settings, monitor, seconds), scene, seconds);
+    if (!p) return {};
+    const auto& [patches, repairs, rays, lights, lit_sides] = p->scene;
+    settings.solve.memory_limit = memory_after_reading(limit, repairs);
+    if (has_memory_for(patches, p->lightmap, settings.solve)) {
+      const bool coarser = asked > 0 ? repairs.max_element > 1.01 * asked : static_cast<double>(fit) < wanted;
+      if (coarser)
+        observer.warn("coarser than asked for, to stay below the memory limit of " + bytes(limit) +
+                      ": elements of up to " + rounded(repairs.max_element) + " m" +
+                      (asked > 0 ? " instead of " + rounded(asked) + " m." : "."));
+      return p;
+    }
+    const std::size_t triangles = repairs.triangles, sides = patches.patch_count();
+    if (triangles > last / 10 * 9)
+      refuse_memory(
+          scene, least_memory({repairs.input_triangles, triangles, sides, sides, p->lightmap.position.size()}), limit);
+    last = triangles;
+  }
+}
+
+}  // namespace clerestory

@@ -1,0 +1,124 @@
+#include "pipeline/repeat_to_target.h"
+
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/wording.h"
+
+#include "solver/model/error.h"
+#include "solver/run/accuracy.h"
+
+namespace clerestory {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Passes progress on and keeps how long each stage of a solve took.
+class StageTimes {
+ public:
+  void on_progress(std::string_view stage) {
+    const auto now = Clock::now();
+    if (stages_.empty() || stages_.back().name != stage) {
+      if (!stages_.empty()) stages_.back().end = now;  // the last report comes before the last stretch of work
+      stages_.push_back({std::string(stage), now, now});
+    }
+    stages_.back().end = now;
+  }
+  double in(const std::string& name) const {
+    double sum = 0;
+    for (const Stage& stage : stages_)
+      if (stage.name.starts_with(name)) sum += std::chrono::duration<double>(stage.end - stage.begin).count();
+    return sum;
+  }
+  /// Takes what the solver's stages took out of `gather`, which holds the whole solve, and gives it to direct, refine
+  /// and reconstruct: what is left was iterating.
+  void split(StageSeconds& s) const {
+    const double vertices = in("vertices");
+    s.direct = in("direct");
+    s.refine = in("refine") + in("links");
+    s.reconstruct += vertices;
+    s.gather -= s.direct + s.refine + vertices;
+  }
+
+ private:
+  struct Stage {
+    std::string name;
+    Clock::time_point begin, end;
+  };
+  std::vector<Stage> stages_;
+};
+
+void add(StageSeconds& sum, const StageSeconds& s) {
+  sum.mesh += s.mesh, sum.build += s.build, sum.gather += s.gather;
+  sum.reconstruct += s.reconstruct, sum.measure += s.measure;
+}
+
+Clock::time_point deadline(const Settings& s) {
+  if (!s.time_limit) return Clock::time_point::max();
+  return s.start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*s.time_limit));
+}
+
+bool is_better(const Solved& a, const Solved& b) {
+  return a.error && (!b.error || a.error->rms_relative <= b.error->rms_relative);
+}
+
+}  // namespace
+
+bool meets_target(const Solved& s) {
+  if (!s.settings.target_error) return true;
+  return s.error && s.error->rms_relative + s.error->confidence <= *s.settings.target_error;
+}
+
+Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRound& round) {
+  StageTimes times;
+  const Monitor monitor{.progress =
+                            [&](std::string_view stage, double done) {
+                              times.on_progress(stage);
+                              observer.progress(stage, done);
+                            },
+                        .interrupted = [&] { return observer.should_stop(); },
+                        .deadline = deadline(asked)};
+  StageSeconds seconds;
+  Settings settings = asked;
+  const auto attempt = [&] {
+    std::optional<Solved> solved = round(settings, monitor);
+    if (!solved) return solved;
+    solved->settings = settings;
+    add(seconds, solved->seconds);
+    return solved;
+  };
+  Solved best;
+  if (auto first = attempt()) {
+    best = std::move(*first);
+  } else {
+    best.solution.stop = StopReason::interrupted;
+    best.settings = settings;
+  }
+  Settings finer = settings;
+  for (int k = 1; k < kMostTightened && !best.empty() && !meets_target(best) && !monitor.should_stop(); ++k) {
+    finer.max_element = finer.max_element.value_or(best.repairs.max_element) * kTighterEdge;
+    ++finer.solve.tighten;
+    observer.note("error " + percent(best.error ? best.error->rms_relative : 1) + ", asked for " +
+                  percent(*finer.target_error) + ": again with elements of " + rounded(*finer.max_element) +
+                  " m and twice the rays");
+    // What is solved already must not be lost to a try that needs too much.
+    try {
+      settings = finer;
+      if (auto next = attempt(); next && is_better(*next, best)) best = std::move(*next);
+    } catch (const InputError& e) {
+      observer.warn(std::string("the target error would need more than this: ") + e.what());
+      break;
+    } catch (const std::bad_alloc&) {
+      observer.warn("the target error would need more memory than there is.");
+      break;
+    }
+  }
+  if (!best.empty() && monitor.should_stop() && !meets_target(best)) best.solution.stop = why_stopped(monitor);
+  best.seconds = seconds;
+  times.split(best.seconds);
+  return best;
+}
+
+}  // namespace clerestory

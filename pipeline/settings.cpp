@@ -1,0 +1,42 @@
+#include "pipeline/settings.h"
+
+#include <algorithm>
+#include <span>
+
+#include "io/scene_file/nearest_name.h"
+
+namespace clerestory {
+namespace {
+
+std::string problem_with(const std::string& name, std::span<const std::string_view> names, const std::string& what) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) return {};
+  return what + " '" + name + "' is not known; " + suggestion(name, names) + ".";
+}
+
+/// Enumerators and names are in the same order.
+template <class Enum>
+Enum named(const std::string& name, std::span<const std::string_view> names) {
+  return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+}  // namespace
+
+std::string problem_with_method(const std::string& name) { return problem_with(name, kMethodNames, "method"); }
+std::string problem_with_accuracy(const std::string& name) { return problem_with(name, kAccuracyNames, "accuracy"); }
+Method method_named(const std::string& name) { return named<Method>(name, kMethodNames); }
+Accuracy accuracy_named(const std::string& name) { return named<Accuracy>(name, kAccuracyNames); }
+
+Settings settings_of(const Scene& scene) {
+  const SolverSettings& file = scene.settings;
+  Settings s;
+  if (file.method) s.solve.method = method_named(*file.method);
+  if (file.accuracy) s.solve.accuracy = accuracy_named(*file.accuracy);
+  if (file.seed) s.solve.seed = *file.seed;
+  s.max_element = file.max_element;
+  s.target_error = file.target_error;
+  s.time_limit = file.time_limit;
+  s.memory_limit = file.memory_limit;
+  return s;
+}
+
+}  // namespace clerestory

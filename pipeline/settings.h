@@ -1,0 +1,36 @@
+#pragma once
+// What is asked of a solve.
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "solver/model/scene.h"
+#include "solver/run/solve.h"
+
+namespace clerestory {
+
+struct Settings {
+  SolveOptions solve;
+  std::optional<int> channels;              ///< 1 or 3; empty: what the scene needs
+  std::optional<double> max_element;        ///< longest edge [m]; empty: by accuracy and size
+  std::optional<double> target_error;       ///< RMS relative [1]
+  std::optional<double> time_limit;         ///< [s]
+  std::optional<std::size_t> memory_limit;  ///< of the whole process [bytes]
+  bool debug = false;                       ///< show what the hierarchical method did
+
+  /// The time limit counts from here, so that reading the scene may be part of it.
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+/// The defaults, with what the scene's file says.
+Settings settings_of(const Scene& scene);
+
+/// Why a name is not a method or an accuracy, with the nearest one; empty when it is.
+std::string problem_with_method(const std::string& name);
+std::string problem_with_accuracy(const std::string& name);
+/// By a known name.
+Method method_named(const std::string& name);
+Accuracy accuracy_named(const std::string& name);
+
+}  // namespace clerestory

@@ -1,0 +1,40 @@
+#pragma once
+// All that a solve leaves behind.
+
+#include <cstddef>
+#include <optional>
+
+#include "pipeline/settings.h"
+
+#include "solver/evaluate/measured_error.h"
+#include "solver/model/hierarchy_debug.h"
+#include "solver/model/mesh_report.h"
+#include "solver/model/patch_set.h"
+#include "solver/model/solution.h"
+#include "solver/model/stage_seconds.h"
+#include "solver/model/vertex_lightmap.h"
+#include "solver/spaces/lit_sides.h"
+
+namespace clerestory {
+
+struct Solved {
+  PatchSet patches;         ///< the elements
+  VertexLightmap lightmap;  ///< of the elements, E filled
+  Solution solution;        ///< of the elements
+  Field sensor_E;           ///< S x channels, by sensor of all sets, one set after the other [W/m2]
+  std::optional<MeasuredError> error, error_sensors;  ///< empty when not measured
+  MeshReport repairs;
+  LitSides lit_sides;
+  std::size_t openings = 0;  ///< through which the sky looks in
+  HierarchyDebug debug;      ///< empty unless asked for
+  Settings settings;         ///< as they were in force for this result
+  StageSeconds seconds;      ///< of all rounds
+
+  /// Stopped before there were patches to solve.
+  bool empty() const { return patches.patch_count() == 0; }
+};
+
+/// Whether the target error is met for sure: the measured error and what is uncertain about it. True without a target.
+bool meets_target(const Solved& solved);
+
+}  // namespace clerestory

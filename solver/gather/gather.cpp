@@ -1,0 +1,81 @@
+#include "solver/gather/gather.h"
+
+#include <cmath>
+
+#include "solver/gather/gather_point.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+
+PointOf sensor_points(std::span<const SensorPoint> points, const Vec3& origin, const RayScene& rays) {
+  const double lift = 2 * rays.lift();
+  return [points, origin, lift](std::size_t i) {
+    const Vec3 n = points[i].normal;
+    return ReceivingPoint{points[i].position - origin + n * lift, n};
+  };
+}
+
+PointOf sample_points(const VertexLightmap& lightmap, const RayScene& rays) {
+  const double lift = rays.lift();
+  return [&lightmap, lift](std::size_t i) {
+    const Vec3 n = lightmap.sample_normal[i];
+    return ReceivingPoint{lightmap.sample_position[i] + n * lift, n};
+  };
+}
+
+PointIrradiance gather_at(const Illumination& light, std::size_t count, const PointOf& point_of,
+                          const GatherPattern& pattern, std::string_view stage, const Monitor& monitor) {
+  PointIrradiance result;
+  result.E = Field(count, light.problem.patches.channels);
+  constexpr std::size_t kBlock = 2048;
+  const Blocks blocks = parallel_blocks(count, kBlock, 16, stage, monitor, [&](std::size_t from, std::size_t to) {
+    unsigned long long rays = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const ReceivingPoint at = point_of(i);
+      result.E.set(i, gather_point(light, at.p, at.n, pattern, rays).E);
+    }
+    return rays;
+  });
+  result.done = blocks.done, result.rays = blocks.rays;
+  return result;
+}
+
+void set_points(const PointIrradiance& at_samples, VertexLightmap& lightmap) {
+  const std::size_t points = lightmap.position.size();
+  const bool has_error = !at_samples.std_error.value.empty();
+  if (has_error) lightmap.std_error = Field(points, at_samples.E.channels);
+  for (std::size_t p = 0; p < points; ++p) {
+    const std::uint32_t begin = lightmap.sample_begin[p], end = lightmap.sample_begin[p + 1];
+    if (end > at_samples.done) break;
+    Spectrum mean(0.0), variance(0.0);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const double weight = lightmap.sample_weight[i];
+      mean += at_samples.E[i] * weight;
+      if (has_error) variance += at_samples.std_error[i] * at_samples.std_error[i] * (weight * weight);
+    }
+    lightmap.E.set(p, mean);
+    if (has_error) lightmap.std_error.set(p, {std::sqrt(variance[0]), std::sqrt(variance[1]), std::sqrt(variance[2])});
+  }
+}
+
+std::vector<std::size_t> buried_points(const Problem& problem, std::span<const SensorPoint> points) {
+  std::vector<std::size_t> buried;
+  constexpr std::uint32_t kRays = 32;
+  const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint32_t dark = 0;
+    const ReceivingPoint at = point_of(i);
+    const Frame frame(at.n);
+    for (std::uint32_t k = 0; k < kRays; ++k) {
+      const auto u = sobol4(k, i);
+      const Hit hit = problem.rays.first_hit(problem.patches, {at.p, cosine_direction(frame, u[0], u[1])});
+      dark += !hit.escaped() && !hit.patch.valid();
+    }
+    if (2 * dark > kRays) buried.push_back(i);
+  }
+  return buried;
+}
+
+}  // namespace clerestory

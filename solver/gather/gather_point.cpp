@@ -1,0 +1,407 @@
+#include "solver/gather/gather_point.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "solver/model/units.h"
+#include "solver/openings/openings.h"
+#include "solver/sampling/polygon_view.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kWorthLooking = 0.1;  ///< share of the bright patches' light in those that are not in panels looked at
+constexpr double kLeastOfBest = 0.2;   ///< of the light of the best panel, else it has no rays of its own
+constexpr std::size_t kMostOpenings = 8, kMostPanels = 4;  ///< that a point looks at by rays of their own
+/// Owners of rays: openings and, from kPanels on, panels, by number.
+constexpr std::uint32_t kPanels = 0x80000000, kNobody = kNoOpening;
+
+/// What comes back along rays from one point.
+class View {
+ public:
+  View(const Illumination& light, const Vec3& p, const Frame& frame, int lamp_rays, const GatherPlan& plan)
+      : light_(light), p_(p), frame_(frame), lamp_rays_(lamp_rays), plan_(plan) {}
+
+  /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
+  /// openings or panels, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
+  void look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
+            std::span<Spectrum> values) const {
+    std::array<Ray, 16> rays;
+    std::array<Hit, 16> hits;
+    for (std::size_t k = 0; k < directions.size(); ++k) rays[k] = {p_, directions[k]};
+    const Problem& problem = light_.problem;
+    problem.rays.first_hits(problem.patches, std::span(rays).first(directions.size()), hits);
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      const Hit& hit = hits[k];
+      values[k] = Spectrum(0.0);
+      if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
+      if (hit.escaped()) {
+        values[k] = light_.sky(hit.direction(rays[k])) * kPi * hit.transmittance;
+      } else if (hit.patch.valid()) {
+        Spectrum back = light_.lamps.glow()[hit.patch];
+        if (owner == kNobody && lamp_rays_ > 0 && !hit.reflected && light_.lamps.is_explicit(hit.patch)) {
+          const double cos_patch = -dot(problem.patches.normal[hit.patch], directions[k]);
+          const double lamp = lamp_rays_ * light_.lamps.density(hit.patch, p_, frame_.n, hit.distance, cos_patch, true);
+          back *= density[k] / (density[k] + lamp);
+        }
+        values[k] = back * hit.transmittance;
+      }
+    }
+  }
+
+  /// Of a ray that meets `patch`, if any, and the first surface at `distance`.
+  std::uint32_t owner_of(const Vec3& direction, double distance, PatchId patch) const {
+    const std::uint32_t opening =
+        first_way_out(light_.problem.lights.openings, plan_.openings, p_, direction, distance);
+    if (opening != kNoOpening || !patch.valid() || plan_.panels.empty()) return opening;
+    const std::uint32_t panel = light_.panels.of(patch);
+    return std::ranges::find(plan_.panels, panel) == plan_.panels.end() ? kNobody : kPanels + panel;
+  }
+
+ private:
+  const Illumination& light_;
+  Vec3 p_;
+  const Frame& frame_;
+  int lamp_rays_;
+  const GatherPlan& plan_;
+};
+
+int lamp_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan) {
+  return plan.looks_for_lamps && light.lamps.has_emitters() ? pattern.quality().lamp_rays : 0;
+}
+
+/// Whether any of a few rays to bright patches gets there: those outside of a room are none of its lamps.
+bool sees_lamps(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                unsigned long long& rays) {
+  if (!light.lamps.has_emitters()) return false;
+  for (std::size_t first = 0; first < GatherPattern::kLampPilots; first += 16) {
+    SegmentPacket segments;
+    unsigned active = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+      const auto& u = pattern.lamp_pilots()[first + static_cast<std::size_t>(lane)];
+      const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], true);
+      segments.set(lane, p, s.density > 0 ? s.end : p);
+      if (s.density > 0) active |= 1u << lane;
+    }
+    rays += 16;
+    if (active && light.problem.rays.visible16(segments, static_cast<std::uint16_t>(active))) return true;
+  }
+  return false;
+}
+
+/// What a few rays find of sky that belongs to none of the openings: part of the view may be sky, or end at a bright
+/// spot of it, and all of it may be.
+enum class SkyInView { none, edge, all };
+SkyInView sky_in_view(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
+                      std::span<const std::uint32_t> openings, unsigned long long& rays) {
+  const int count = pattern.bundle().budget().strata();
+  bool sky = false, other = false;
+  double brightest = 0, sum = 0;
+  std::array<Ray, 16> pilots;
+  std::array<Hit, 16> hits;
+  for (int first = 0; first < count; first += 64) {
+    for (int k = 0; k < 16; ++k) {
+      const auto& d = pattern.bundle().pilot(first + 4 * k);
+      pilots[static_cast<std::size_t>(k)] = {p, frame.to_world(d[0], d[1], d[2])};
+    }
+    light.problem.rays.first_hits(light.problem.patches, pilots, hits);
+    rays += 16;
+    for (std::size_t k = 0; k < 16; ++k) {
+      const bool is_sky = hits[k].escaped() && first_way_out(light.problem.lights.openings, openings, p,
+                                                             pilots[k].direction, hits[k].first) == kNoOpening;
+      (is_sky ? sky : other) = true;
+      if (!is_sky) continue;
+      const double L = luminous_mean(light.sky(hits[k].direction(pilots[k])));
+      brightest = std::max(brightest, L), sum += L;
+    }
+    if (sky && other) return SkyInView::edge;
+  }
+  if (brightest > 1.5 * sum / (count / 4)) return SkyInView::edge;  // around the sun, or in an image
+  return sky ? SkyInView::all : SkyInView::none;
+}
+
+std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {
+  return std::size_t{1} << (shares.empty() ? budget.least() : shares[static_cast<std::size_t>(stratum)]);
+}
+
+/// Of cosine-distributed directions, per solid angle, in the frame of the normal.
+double cosine_density(const std::array<float, 3>& d) { return std::max(1e-6, static_cast<double>(d[2])) / kPi; }
+
+struct Sum {
+  Spectrum E{0.0};
+  double noise = 0;  ///< variance by the differences of neighbouring rays
+};
+
+/// Irradiance along the bundle's rays that belong to nobody else.
+Sum from_bundle(const View& view, const Frame& frame, const Strata& strata, const RayShares& shares,
+                unsigned long long& rays) {
+  std::array<Vec3, 16> directions;
+  std::array<double, 16> density, share_of_ray;
+  std::array<Spectrum, 16> values;
+  std::size_t queued = 0;
+  Sum sum;
+  const auto flush = [&] {
+    view.look(std::span(directions).first(queued), density, kNobody, std::span(values).first(queued));
+    for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * share_of_ray[k];
+    for (std::size_t k = 0; k + 1 < queued; k += 2) {
+      const double difference =
+          luminous_mean(values[k]) * share_of_ray[k] - luminous_mean(values[k + 1]) * share_of_ray[k + 1];
+      sum.noise += difference * difference;
+    }
+    rays += queued;
+    queued = 0;
+  };
+  const RayBudget& budget = strata.budget();
+  for (int cell = 0; cell < budget.strata(); ++cell) {
+    const std::size_t count = share_of(shares, budget, cell);
+    const double share = 1.0 / static_cast<double>(count * static_cast<std::size_t>(budget.strata()));
+    for (const auto& d : strata.directions(cell).first(count)) {
+      directions[queued] = frame.to_world(d[0], d[1], d[2]);
+      density[queued] = cosine_density(d) / share;
+      share_of_ray[queued++] = share;
+      if (queued == 16) flush();
+    }
+  }
+  if (queued) flush();
+  return sum;
+}
+
+/// What pilot rays of the bundle find in each stratum; 0 where they belong to an opening or a panel.
+std::vector<Spectrum> pilot_values(const View& view, const Frame& frame, const Strata& strata,
+                                   unsigned long long& rays) {
+  const int count = strata.budget().strata();
+  const double share = 1.0 / (count << strata.budget().least());
+  std::vector<Spectrum> found(static_cast<std::size_t>(count));
+  std::array<Vec3, 16> directions;
+  std::array<double, 16> density;
+  for (int first = 0; first < count; first += 16) {
+    for (int k = 0; k < 16; ++k) {
+      const auto& d = strata.pilot(first + k);
+      directions[static_cast<std::size_t>(k)] = frame.to_world(d[0], d[1], d[2]);
+      density[static_cast<std::size_t>(k)] = cosine_density(d) / share;
+    }
+    view.look(directions, density, kNobody, std::span(found).subspan(static_cast<std::size_t>(first), 16));
+  }
+  rays += static_cast<unsigned>(count);
+  return found;
+}
+
+/// More rays where neighbours differ; the last column of the grid is a neighbour of the first.
+RayShares shares_by(const std::vector<Spectrum>& found, const RayBudget& budget) {
+  const int g = budget.grid;
+  std::vector<double> pilot(found.size());
+  std::ranges::transform(found, pilot.begin(), [](const Spectrum& x) { return luminous_mean(x); });
+  double sum_of_differences = 0, sum = 0;
+  std::vector<double> difference(pilot.size());
+  for (int i = 0; i < g; ++i)
+    for (int j = 0; j < g; ++j) {
+      const auto cell = static_cast<std::size_t>(budget.stratum(i, j));
+      double low = pilot[cell], high = low;
+      for (int di = -1; di <= 1; ++di)
+        for (int dj = -1; dj <= 1; ++dj) {
+          if (i + di < 0 || i + di >= g) continue;
+          const double near = pilot[static_cast<std::size_t>(budget.stratum(i + di, (j + dj + g) % g))];
+          low = std::min(low, near), high = std::max(high, near);
+        }
+      difference[cell] = high - low;
+      sum_of_differences += difference[cell];
+      sum += pilot[cell];
+    }
+  if (!(sum_of_differences > 0)) return {};
+  // An even view needs no surplus: all of it is spent once neighbours differ by a quarter of the mean on average.
+  const double surplus = (budget.most_rays - budget.rays) * std::min(1.0, 4 * sum_of_differences / sum);
+  const double least = std::ldexp(1, budget.least());
+  RayShares shares(pilot.size());
+  for (std::size_t c = 0; c < pilot.size(); ++c) {
+    const double wanted = least + surplus * difference[c] / sum_of_differences;
+    shares[c] = static_cast<std::uint8_t>(
+        std::clamp(static_cast<int>(std::lround(std::log2(wanted))), budget.least(), budget.deepest()));
+  }
+  return shares;
+}
+
+/// Where to look at an area, how, and who else may own a ray.
+struct AreaView {
+  const View& view;
+  const PolygonView& polygon;
+  std::uint32_t owner;
+
+  /// Up to 16 points.
+  void look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,
+            std::span<PolygonView::Sight> sights) const {
+    std::array<Vec3, 16> directions;
+    std::array<double, 16> density{};  // counts for rays that belong to nobody only
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      sights[k] = polygon.look(points[k][0], points[k][1]);
+      directions[k] = sights[k].direction;
+    }
+    view.look(std::span(directions).first(points.size()), density, owner, values);
+  }
+};
+
+/// Irradiance from an area: what differs from the mean of the plan by a ray a cell, the mean itself in closed form.
+Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells, const LightArea& area, const Vec3& p,
+              const Vec3& n, unsigned long long& rays) {
+  Sum sum{plan.mean * form_factor(area, p, n), 0};
+  std::array<std::array<float, 2>, 16> points;
+  std::array<Spectrum, 16> values;
+  std::array<PolygonView::Sight, 16> sights;
+  for (std::size_t first = 0; first < plan.size(); first += 16) {
+    const std::size_t count = std::min<std::size_t>(16, plan.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const AreaCell cell = plan[first + k];
+      points[k] = cells.points(cell.grid)[cell.number];
+    }
+    view.look(std::span(points).first(count), std::span(values).first(count), sights);
+    double last = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& [direction, per_share] = sights[k];
+      const Spectrum E = (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan[first + k].share());
+      sum.E += E;
+      if (k % 2 == 1) sum.noise += (luminous_mean(E) - last) * (luminous_mean(E) - last);
+      last = luminous_mean(E);
+    }
+  }
+  rays += plan.size();
+  return sum;
+}
+
+Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
+                        const GatherPlan& plan, const View& view) {
+  const int count = pattern.quality().lamp_rays;
+  const RayBudget& budget = pattern.quality().bundle;
+  Spectrum sum(0.0);
+  for (int first = 0; first < count; first += 16) {
+    SegmentPacket segments;
+    std::array<Spectrum, 16> open;
+    std::array<Vec3, 16> end;
+    unsigned active = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+      const auto k = static_cast<std::size_t>(lane);
+      const auto& u = pattern.lamp_choices()[static_cast<std::size_t>(first) + k];
+      const LightSample s = light.lamps.sample(p, frame.n, u[0], u[1], u[2], true);
+      segments.set(lane, p, s.density > 0 ? s.end : p);
+      if (!(s.density > 0)) continue;
+      const Vec3 d = normalized(s.end - p);
+      if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
+      const std::size_t rays = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
+      const double bundle = static_cast<double>(rays) * budget.strata() * dot(frame.n, d) / kPi;
+      const double lamp = count * s.density;
+      active |= 1u << lane;
+      end[k] = s.end;
+      open[k] = s.irradiance * (lamp / (lamp + bundle));
+    }
+    if (!active) continue;
+    for (unsigned seen = light.problem.rays.visible16(segments, static_cast<std::uint16_t>(active)); seen;
+         seen &= seen - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(seen));
+      sum += open[k] * light.problem.rays.glass_transmittance(p, end[k]);
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+bool wants_plan(const Illumination& light, const GatherPattern& pattern) {
+  const RayBudget& bundle = pattern.quality().bundle;
+  if (!light.panels.shape.empty()) return true;
+  return !light.sky.dark() && (bundle.deepest() > bundle.least() || !light.problem.lights.openings.empty());
+}
+
+GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                       unsigned long long& rays) {
+  const Frame frame(n);
+  GatherPlan plan;
+  GatherPlan owners;  // so far: what an area shares with earlier ones is theirs
+  const auto look_at = [&](const LightArea& area, std::uint32_t owner, std::vector<std::uint32_t>& numbers,
+                           std::vector<AreaPlan>& plans) {
+    const PolygonView polygon(p, n, area.triangles, area.corners);
+    if (!(polygon.solid_angle() > 0)) return false;
+    const View view(light, p, frame, 0, owners);
+    const double others = light.panels.ambient / std::max(1e-12, form_factor(area, p, n));
+    AreaPlan found = plan_area(pattern.area_cells(), pattern.quality().area, others, [&](auto points, auto values) {
+      std::array<PolygonView::Sight, 16> sights;
+      for (std::size_t first = 0; first < points.size(); first += 16) {
+        const std::size_t count = std::min<std::size_t>(16, points.size() - first);
+        AreaView{view, polygon, owner}.look(points.subspan(first, count), values.subspan(first, count), sights);
+      }
+      rays += points.size();
+    });
+    if (found.mean.is_black()) return false;
+    numbers.push_back(owner & ~kPanels);
+    plans.push_back(std::move(found));
+    return true;
+  };
+  const std::vector<LightArea>& openings = light.problem.lights.openings;
+  for (const std::uint32_t k : areas_over(openings, p, n, kMostOpenings, 0)) {
+    owners.openings.push_back(k);
+    if (!look_at(openings[k], k, plan.openings, plan.opening_plans)) owners.openings.pop_back();
+  }
+  for (const std::uint32_t k : areas_over(light.panels.shape, p, n, kMostPanels, kLeastOfBest)) {
+    owners.panels.push_back(k);
+    look_at(light.panels.shape[k], kPanels + k, plan.panels, plan.panel_plans);
+  }
+  double left = light.panels.all_flux;
+  for (const std::uint32_t k : plan.panels) left -= light.panels.flux[k];
+  plan.looks_for_lamps = (light.panels.shape.empty() || left > kWorthLooking * light.panels.all_flux) &&
+                         (light.sky.dark() || sees_lamps(light, p, n, pattern, rays));
+  const Strata& bundle = pattern.bundle();
+  const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
+  const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;
+  if (sky == SkyInView::edge) {
+    const View view(light, p, frame, lamp_rays(light, pattern, plan), plan);
+    plan.bundle = shares_by(pilot_values(view, frame, bundle, rays), bundle.budget());
+  } else if (sky == SkyInView::all) {  // changes slowly all over: half of the surplus, evenly
+    const int rays_each = (bundle.budget().rays + bundle.budget().most_rays) / 2 / bundle.budget().strata();
+    plan.bundle.assign(static_cast<std::size_t>(bundle.budget().strata()),
+                       static_cast<std::uint8_t>(std::bit_width(static_cast<unsigned>(rays_each)) - 1));
+  }
+  return plan;
+}
+
+PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                        const GatherPlan& plan, unsigned long long& rays) {
+  const int to_lamps = lamp_rays(light, pattern, plan);
+  const Frame frame(n);
+  const View view(light, p, frame, to_lamps, plan);
+  Sum sum = from_bundle(view, frame, pattern.bundle(), plan.bundle, rays);
+  const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
+    // A plan may come from the other side of the area's plane: from there no ray belongs to it.
+    if (!(dot(p - area.centre, area.normal) > 0)) return;
+    const PolygonView polygon(p, n, area.triangles, area.corners);
+    if (!(polygon.solid_angle() > 0)) return;
+    const Sum found = from_area({view, polygon, owner}, area_plan, pattern.area_cells(), area, p, n, rays);
+    sum.E += found.E;
+    sum.noise += found.noise;
+  };
+  for (std::size_t k = 0; k < plan.openings.size(); ++k)
+    look_at(light.problem.lights.openings[plan.openings[k]], plan.openings[k], plan.opening_plans[k]);
+  for (std::size_t k = 0; k < plan.panels.size(); ++k)
+    look_at(light.panels.shape[plan.panels[k]], kPanels + plan.panels[k], plan.panel_plans[k]);
+
+  PointLight at{sum.E, Spectrum(0.0), std::sqrt(sum.noise)};
+  if (to_lamps > 0) {
+    at.E += bright_patches(light, p, frame, pattern, plan, view);
+    rays += static_cast<unsigned>(to_lamps);
+  }
+  if (!light.problem.lights.empty()) {
+    at.small_lights = light.lamps.small_lights(p, n, pattern.quality().sun_rays, pattern.sun_key());
+    at.E += at.small_lights;
+  }
+  return at;
+}
+
+PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                        unsigned long long& rays) {
+  return gather_point(light, p, n, pattern,
+                      wants_plan(light, pattern) ? plan_gather(light, p, n, pattern, rays) : GatherPlan{}, rays);
+}
+
+}  // namespace clerestory

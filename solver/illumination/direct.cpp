@@ -1,0 +1,377 @@
+#include "solver/illumination/direct.h"
+
+#include <algorithm>
+#include <bit>
+#include <numbers>
+
+#include "solver/lights/point_lights.h"
+#include "solver/lights/sun.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/openings/openings.h"
+#include "solver/sampling/polygon_view.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+namespace {
+
+enum StreamKind : std::uint64_t { kLampPoints = 0x11, kSkyRays = 0x12, kLampRays = 0x13, kOpeningRays = 0x14 };
+
+/// What a point of a patch is shown of a light.
+struct Shown {
+  Vec3 end;             ///< of the shadow ray
+  Spectrum irradiance;  ///< when nothing blocks
+  std::uint32_t mirror = kNoMirror;
+};
+
+/// Adds to E_i the mean over points of patch i of the irradiance that open_at(point) gives where a segment to
+/// end_for(point, u, v) is free.
+class PatchSampler {
+ public:
+  PatchSampler(const Problem& problem, std::size_t patch, const DirectOptions& options)
+      : problem_(problem),
+        corners_(problem.patches.corner_positions(PatchId{patch})),
+        normal_(problem.patches.normal[patch]),
+        key_(stream_key(options.seed, kLampPoints, patch)),
+        options_(options) {}
+
+  const Vec3& normal() const { return normal_; }
+  Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
+  /// Whether any of the lamp may be in front of any of the patch.
+  bool faces(const auto& lamp) const {
+    return std::any_of(corners_.begin(), corners_.end(),
+                       [&](const Vec3& c) { return dot(normal_, lamp.position - c) > -reach(lamp); });
+  }
+
+  /// What the lamp can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
+  template <class Lamp>
+  double estimate(const Lamp& lamp) const {
+    if (!faces(lamp)) return 0;
+    const Vec3 middle = centre();
+    double sum = 0, size2 = 0;
+    for (const Vec3& p : {corners_[0], corners_[1], corners_[2], middle}) {
+      sum += luminous_mean(open_irradiance(lamp, p, normal_));
+      size2 = std::max(size2, dot(p - middle, p - middle));
+    }
+    // A beam may miss the four points; and a lamp in the middle of the patch is not as bright as it seems from there.
+    const Vec3 d = lamp.position - middle;
+    const double all_round = luminous_mean(power(lamp)) / (4 * std::numbers::pi * (dot(d, d) + size2));
+    return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
+  }
+
+  template <class Open, class End>
+  Spectrum mean(std::uint32_t mirror, const Open& open_at, const End& end_for, bool wide = false) const {
+    return mean_of_choice(
+        [&](const Vec3& p, double u, double v, const auto&) {
+          const Vec3 end = end_for(p, u, v);
+          return Shown{end, open_at(p, end), mirror};
+        },
+        wide);
+  }
+
+  /// The same where light(point, u, v, pick) gives the end and the irradiance together; pick() is a number to choose
+  /// by. wide: the light comes from all over an opening, which sixteen rays know to a few per cent only.
+  template <class Light>
+  Spectrum mean_of_choice(const Light& light, bool wide) const {
+    if (options_.edge_rays <= options_.lamp_rays) return look(key_, options_.lamp_rays, light).sum / options_.lamp_rays;
+    // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
+    // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
+    const Tally pilot = look(mix_bits(key_), options_.lamp_rays, light);
+    const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
+    const int rays =
+        on_an_edge ? options_.edge_rays : std::min(options_.edge_rays, options_.lamp_rays * (wide ? 4 : 1));
+    return look(key_, rays, light).sum / rays;
+  }
+
+ private:
+  struct Tally {
+    Spectrum sum{0.0};
+    int facing = 0, visible = 0;
+  };
+
+  template <class Light>
+  Tally look(std::uint64_t key, int count, const Light& light) const {
+    const double lift = problem_.rays.lift();
+    Tally tally;
+    for (int first = 0; first < count; first += 16) {
+      SegmentPacket segments;
+      std::array<Spectrum, 16> open;
+      std::array<Vec3, 16> from, to;
+      unsigned facing = 0;
+      for (int lane = 0; lane < 16; ++lane) {
+        const auto k = static_cast<std::size_t>(lane);
+        const auto u = sobol4(static_cast<std::uint32_t>(first + lane), key);
+        from[k] = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
+        const auto pick = [&] { return sobol4(static_cast<std::uint32_t>(first + lane), key + 1)[0]; };
+        const Shown shown = light(from[k], u[2], u[3], pick);
+        to[k] = short_of(shown.end, from[k], lift);
+        open[k] = shown.irradiance;
+        segments.set(lane, from[k], to[k]);
+        if (open[k].is_black()) continue;
+        if (shown.mirror == kNoMirror) {
+          facing |= 1u << lane;
+          continue;
+        }
+        const Spectrum passes = problem_.rays.transmittance_by_mirror(from[k], to[k], shown.mirror);
+        tally.sum += open[k] * passes;
+        tally.facing += 1, tally.visible += !passes.is_black();
+      }
+      const unsigned seen = problem_.rays.visible16(segments, static_cast<std::uint16_t>(facing));
+      tally.facing += std::popcount(facing), tally.visible += std::popcount(seen);
+      for (unsigned left = seen; left; left &= left - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(left));
+        tally.sum += open[k] * problem_.rays.glass_transmittance(from[k], to[k]);
+      }
+    }
+    return tally;
+  }
+
+  const Problem& problem_;
+  std::array<Vec3, 3> corners_;
+  Vec3 normal_;
+  std::uint64_t key_;
+  const DirectOptions& options_;
+};
+
+template <class Lamp>
+Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
+  if (!patch.faces(lamp)) return Spectrum(0.0);
+  return patch.mean(
+      lamp.mirror, [&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
+      [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); },
+      opening_rays(lamp, patch.centre()) > 4);
+}
+
+/// The luminaires over one patch. Those that give much of its light are looked at one by one; the others, however many,
+/// share the rays of one, each ray to a lamp chosen in proportion to what it can give.
+Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
+  constexpr std::size_t kFew = 4;    // lamps that need no choice
+  constexpr double kMuch = 1.0 / 6;  // of what all can give
+  const std::size_t count = lights.lamp_count();
+  Spectrum E(0.0);
+  if (count <= kFew) {
+    for_each_lamp(lights, [&](const auto& lamp, std::size_t) { E += from_lamp(patch, lamp); });
+    return E;
+  }
+  struct Over {
+    std::uint32_t number;
+    double gives;  ///< estimate without blockers, > 0 where the lamp can give anything [W/m2]
+    bool wide;     ///< from all over an opening
+  };
+  thread_local std::vector<Over> over;
+  over.clear();
+  double all = 0;
+  for_each_lamp(lights, [&](const auto& lamp, std::size_t number) {
+    const double gives = patch.estimate(lamp);
+    if (gives > 0) over.push_back({static_cast<std::uint32_t>(number), gives, opening_rays(lamp, patch.centre()) > 4});
+    all += gives;
+  });
+  bool wide = false;
+  double shared = 0;  // becomes the running sum over lamps that share rays
+  std::size_t kept = 0;
+  for (const Over& lamp : over) {
+    if (lamp.gives > kMuch * all) {
+      with_lamp(lights, lamp.number, [&](const auto& l) { E += from_lamp(patch, l); });
+    } else {
+      shared += lamp.gives;
+      wide = wide || lamp.wide;
+      over[kept++] = {lamp.number, shared, false};
+    }
+  }
+  over.resize(kept);
+  if (!(shared > 0)) return E;
+  const auto chosen = [&](double pick) {
+    const auto at = std::upper_bound(over.begin(), over.end(), pick * shared,
+                                     [](double x, const Over& lamp) { return x < lamp.gives; });
+    return static_cast<std::size_t>(std::min(at, over.end() - 1) - over.begin());
+  };
+  return E + patch.mean_of_choice(
+                 [&](const Vec3& p, double u, double v, const auto& pick) {
+                   const std::size_t k = chosen(pick());
+                   const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
+                   return with_lamp(lights, over[k].number, [&](const auto& lamp) {
+                     const Vec3 q = light_point(lamp, p, u, v);
+                     return Shown{q, open_irradiance(lamp, q, p, patch.normal()) / probability, lamp.mirror};
+                   });
+                 },
+                 wide);
+}
+
+Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {
+  if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
+  return patch.mean(
+      sun.mirror,
+      [&](const Vec3& p, const Vec3& end) {
+        return sun.normal_irradiance * std::max(0.0, dot(patch.normal(), end - p) / far_away);
+      },
+      [&](const Vec3& p, double u, double v) { return p + direction_to_sun(sun, u, v) * far_away; });
+}
+
+constexpr std::size_t kMostOpenings = 4;  ///< over a patch
+constexpr int kRaysOfOpening = 32;        ///< through each opening that matters
+
+/// Light of the sky through some openings, from points all over the patch. looked_at: those that a few rays found to
+/// show sky; light through the others is left to bundles.
+Spectrum through_openings(const Illumination& light, std::size_t patch, const DirectOptions& options,
+                          std::vector<std::uint32_t>& looked_at) {
+  constexpr int kPilotRays = 8;
+  const Problem& problem = light.problem;
+  const std::vector<LightArea>& openings = problem.lights.openings;
+  const Vec3 n = problem.patches.normal[patch];
+  const auto corners = problem.patches.corner_positions(PatchId{patch});
+  std::vector<std::uint32_t> over =
+      areas_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings, 0);
+  for (const Vec3& corner : corners)  // all of a patch may see of it is from one corner
+    for (const std::uint32_t k : areas_over(openings, corner, n, 1, 0)) over.push_back(k);
+  std::sort(over.begin(), over.end());
+  over.erase(std::unique(over.begin(), over.end()), over.end());
+
+  const auto look = [&](std::uint32_t number, std::uint64_t key, int count) {
+    Spectrum sum(0.0);
+    for (int k = 0; k < count; ++k) {
+      const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+      const Vec3 p = point_on_triangle(corners, u[0], u[1]) + n * problem.rays.lift();
+      const PolygonView polygon(p, n, openings[number].triangles, openings[number].corners);
+      if (!(polygon.solid_angle() > 0)) continue;
+      const auto [d, solid_angle] = polygon.look(u[2], u[3]);
+      const Hit hit = problem.rays.first_hit(problem.patches, {p, d});
+      if (!hit.escaped() || first_way_out(openings, looked_at, p, d, hit.first) != number) continue;
+      sum += light.sky(hit.direction({p, d})) * hit.transmittance * (std::max(0.0, dot(d, n)) * solid_angle);
+    }
+    return sum / count;
+  };
+  const std::uint64_t key = stream_key(options.seed, kOpeningRays, patch);
+  std::vector<std::uint32_t> seen;
+  for (const std::uint32_t k : over) {
+    looked_at = {k};
+    if (!look(k, stream_key(key, k + 1), kPilotRays).is_black()) seen.push_back(k);
+  }
+  looked_at = seen;
+  Spectrum E(0.0);
+  for (const std::uint32_t k : looked_at) E += look(k, mix_bits(stream_key(key, k)), kRaysOfOpening);
+  return E;
+}
+
+Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOptions& options,
+                  std::span<const std::uint32_t> looked_at) {
+  const Problem& problem = light.problem;
+  const Frame frame(problem.patches.normal[patch]);
+  const auto corners = problem.patches.corner_positions(PatchId{patch});
+  const std::uint64_t key = stream_key(options.seed, kSkyRays, patch);
+  Spectrum sum(0.0);
+  for (int k = 0; k < options.sky_rays; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+    const Ray ray{point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
+                  cosine_direction(frame, u[0], u[1])};
+    const Hit hit = problem.rays.first_hit(problem.patches, ray);
+    if (hit.escaped() &&
+        first_way_out(problem.lights.openings, looked_at, ray.origin, ray.direction, hit.first) == kNoOpening)
+      sum += light.sky(hit.direction(ray)) * hit.transmittance;
+  }
+  return sum * (std::numbers::pi / options.sky_rays);
+}
+
+/// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
+template <class Lamp>
+EnergyBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t rays, std::uint64_t key) {
+  if (lamp.mirror != kNoMirror) return {};  // mirrors turn the lamp's own rays
+  double sent = 0, arrived = 0, escaped = 0;
+  for (std::uint32_t k = 0; k < rays; ++k) {
+    const auto u = sobol4(k, key);
+    const Vec3 d = sphere_direction(u[0], u[1]);
+    const double I = luminous_mean(intensity(lamp, d));
+    if (!(I > 0)) continue;
+    const double lift = 20 * problem.rays.lift();
+    const Hit hit =
+        problem.rays.first_hit(problem.patches, {light_point(lamp, lamp.position, u[2], u[3]) + d * lift, d});
+    sent += I;
+    if (hit.escaped()) escaped += I * luminous_mean(hit.transmittance);
+    if (hit.patch.valid()) arrived += I * luminous_mean(hit.transmittance);
+  }
+  const double flux = luminous_mean(power(lamp));
+  if (!(sent > 0)) return {.emitted = flux};
+  return {.emitted = flux, .absorbed = flux * (sent - arrived - escaped) / sent, .escaped = flux * escaped / sent};
+}
+
+/// Many lamps share the rays of four.
+void balance_lamps(const Problem& problem, DirectLight& direct, const DirectOptions& options) {
+  const std::size_t count = problem.lights.lamp_count();
+  if (count == 0) return;
+  const auto rays = static_cast<std::uint32_t>(std::clamp<std::size_t>((1 << 16) / count, 512, 1 << 14));
+  std::vector<EnergyBalance> balances(count);
+  parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
+    for (std::size_t number = from; number < to; ++number)
+      balances[number] = with_lamp(problem.lights, number, [&](const auto& lamp) {
+        return balance(problem, lamp, rays, stream_key(options.seed, kLampRays, number));
+      });
+  });
+  for (const EnergyBalance& b : balances) {
+    direct.energy.emitted += b.emitted;
+    direct.energy.escaped += b.escaped;
+    direct.energy.absorbed += b.absorbed;
+  }
+  direct.rays += count * rays;
+}
+
+}  // namespace
+
+DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor) {
+  const Problem& problem = light.problem;
+  const Lights& lights = problem.lights;
+  const std::size_t n = problem.patches.patch_count();
+  DirectLight direct;
+  direct.E = Field(n, problem.patches.channels);
+  if (lights.empty()) return direct;
+
+  const double far_away = 4 * problem.rays.diameter();
+  std::vector<double> daylight(n);  // [W] of each patch
+  const bool has_openings = !lights.openings.empty();
+  std::vector<std::vector<std::uint32_t>> looked_at(has_openings ? n : 0);
+  if (has_openings) direct.E_openings = Field(n, problem.patches.channels);
+  const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
+    const PatchSampler patch(problem, i, spend);
+    const Spectrum lamps = from_lamps(lights, patch);
+    Spectrum sky(0.0);
+    for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
+    if (has_openings) {
+      const Spectrum through = through_openings(light, i, spend, looked_at[i]);
+      direct.E_openings.set(i, through);
+      if (spend.sky_rays > 0) sky += through;
+    }
+    if (!light.sky.dark() && spend.sky_rays > 0)
+      sky += from_sky(light, i, spend, has_openings ? looked_at[i] : std::vector<std::uint32_t>{});
+    direct.E.set(i, lamps + sky);
+    daylight[i] = luminous_mean(sky) * problem.patches.area[i];
+  };
+  if (options.rough_first && monitor.deadline != Monitor{}.deadline) {
+    // Time may run out below: no patch shall stay dark for that.
+    const DirectOptions rough{
+        .lamp_rays = 16, .edge_rays = 16, .sky_rays = std::min(16, options.sky_rays), .seed = options.seed};
+    parallel_for(n, 32, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) light_patch(i, rough);
+    });
+  }
+  constexpr std::size_t kBlock = 1 << 11;
+  for (std::size_t begin = 0; begin < n && !monitor.should_stop(); begin += kBlock) {
+    monitor.report("direct", static_cast<double>(begin) / static_cast<double>(n));
+    parallel_for(std::min(kBlock, n - begin), 32, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = begin + from; i < begin + to; ++i) light_patch(i, options);
+    });
+  }
+  for (const double flux : daylight) direct.energy.emitted += flux;
+  if (has_openings) {
+    direct.openings.begin.push_back(0);
+    for (const auto& numbers : looked_at) {
+      direct.openings.number.insert(direct.openings.number.end(), numbers.begin(), numbers.end());
+      direct.openings.begin.push_back(static_cast<std::uint32_t>(direct.openings.number.size()));
+    }
+    direct.rays += direct.openings.number.size() * static_cast<std::size_t>(kRaysOfOpening);
+  }
+  direct.rays += n * static_cast<std::size_t>(options.lamp_rays) * (lights.lamp_count() + lights.suns.size());
+  if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
+  balance_lamps(problem, direct, options);
+  return direct;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,47 @@
+#pragma once
+// Light that reaches the patches from sky, sun and luminaires without a bounce.
+
+#include <span>
+#include <vector>
+
+#include "solver/illumination/illumination.h"
+#include "solver/model/monitor.h"
+#include "solver/model/solution.h"
+
+namespace clerestory {
+
+struct DirectOptions {
+  int lamp_rays = 16;   ///< shadow rays from a patch to each lamp and sun, a multiple of 16
+  int edge_rays = 256;  ///< instead, where as many rays of a pilot disagree: the patch lies on the edge of a shadow
+  int sky_rays = 256;   ///< cosine rays a patch that look for the sky; 0: without sky but through openings
+  std::uint64_t seed = 1;
+  bool rough_first = true;  ///< with a deadline: all patches get a rough value, in case it comes before the good ones
+};
+
+/// Which openings rays of their own look through, by patch: of patch i number[begin[i]] ... number[begin[i + 1] - 1].
+/// Both are empty without any.
+struct OpeningsOfPatches {
+  std::vector<std::uint32_t> begin, number;
+
+  std::span<const std::uint32_t> of(std::size_t patch) const {
+    if (begin.empty()) return {};
+    return std::span(number).subspan(begin[patch], begin[patch + 1] - begin[patch]);
+  }
+};
+
+struct DirectLight {
+  Field E;  ///< N x channels, mean irradiance of each patch [W/m2]
+  /// N x channels, the part of the sky's that comes straight through an opening looked at by its own rays; bundles
+  /// leave it out. Part of E when DirectOptions has sky rays [W/m2].
+  Field E_openings;
+  OpeningsOfPatches openings;  ///< those looked at, by patch
+  EnergyBalance energy;  ///< emitted: luminaires' flux, and what sky and sun bring in; escaped and absorbed (by glass
+                         ///< and sides that take no part): the part of the luminaires' flux that misses the patches
+  unsigned long long rays = 0;
+};
+
+/// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share. Looking twice at edges
+/// favours all lit and all dark alike, by less than 0.03 of a patch, which cancels along an edge.
+DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {});
+
+}  // namespace clerestory

@@ -1,0 +1,237 @@
+#include "solver/illumination/light_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numbers>
+
+#include "solver/lights/point_lights.h"
+#include "solver/lights/sun.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+namespace {
+
+/// Half of the area of all patches glows no more than this (luminous mean), to the precision of float. The bits of a
+/// positive float order like its value: three passes over histograms of 11, 11 and 10 of them need no memory.
+double area_median(const PatchSet& patches, const Field& glow) {
+  const auto bits = [&](std::size_t i) {
+    return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(luminous_mean(glow[i]), 0.0)));
+  };
+  double half = patches.total_area() / 2;
+  std::uint32_t found = 0, known = 0;
+  for (const int shift : {21, 10, 0}) {
+    std::vector<double> area(2048, 0.0);
+    for (std::size_t i = 0; i < patches.patch_count(); ++i)
+      if (const std::uint32_t b = bits(i); (b & known) == found) area[(b >> shift) & 2047] += patches.area[i];
+    std::uint32_t bin = 0, last = 0;
+    for (; bin < area.size() && half > 0; ++bin)
+      if (area[bin] > 0) {
+        last = bin;
+        if (half <= area[bin]) break;
+        half -= area[bin];
+      }
+    found |= last << shift;
+    known |= 2047u << shift;
+  }
+  return std::bit_cast<float>(found);
+}
+
+LightBounds bounds_of_patch(const PatchSet& patches, PatchId q, double flux) {
+  const auto c = patches.corner_positions(q);
+  return {{std::min({c[0].x, c[1].x, c[2].x}), std::min({c[0].y, c[1].y, c[2].y}), std::min({c[0].z, c[1].z, c[2].z})},
+          {std::max({c[0].x, c[1].x, c[2].x}), std::max({c[0].y, c[1].y, c[2].y}), std::max({c[0].z, c[1].z, c[2].z})},
+          patches.normal[q],
+          0,
+          flux};
+}
+
+LightBounds bounds_of(const PointLuminaire& lamp) {
+  return {lamp.position, lamp.position, {}, std::numbers::pi, luminous_mean(intensity(lamp, {}))};
+}
+LightBounds bounds_of(const SpotLuminaire& lamp) {
+  return {lamp.position, lamp.position, lamp.direction, lamp.outer_angle, luminous_mean(lamp.intensity)};
+}
+LightBounds bounds_of(const WebLuminaire& lamp) {
+  const auto& [x, y, z] = lamp.axes;
+  const Vec3 half = lamp.web->opening.size / 2;
+  const auto along = [&](int axis) {
+    return std::abs(x[axis]) * half.x + std::abs(y[axis]) * half.y + std::abs(z[axis]) * half.z;
+  };
+  const Vec3 box{along(0), along(1), along(2)};
+  const double cone = beam_half_angle(*lamp.web);
+  return {lamp.position - box, lamp.position + box, cone < std::numbers::pi ? -z : Vec3{}, cone,
+          luminous_mean(lamp.scale) * peak_candela(*lamp.web)};
+}
+
+/// Circular cross-section of the scene: what a sun lights at most [m2].
+double cross_section(const RayScene& rays) { return std::numbers::pi / 4 * rays.diameter() * rays.diameter(); }
+
+}  // namespace
+
+LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_(problem), glow_(glow) {
+  const PatchSet& patches = problem.patches;
+  const Lights& lights = problem.lights;
+  const double extent = problem.rays.diameter();
+
+  std::vector<LightBounds> bounds;
+  const double bright = kBrighter * area_median(patches, glow);
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    const double B = luminous_mean(glow[i]), flux = B * patches.area[i];
+    if (!(B > bright) || !(flux > 0)) continue;
+    if (bright_.empty()) number_of_patch_.assign(patches.patch_count(), LightTree::kNone);
+    number_of_patch_[i] = static_cast<std::uint32_t>(bright_.size());
+    bright_.push_back(static_cast<std::uint32_t>(i));
+    bounds.push_back(bounds_of_patch(patches, PatchId{i}, flux));
+    patches_power_ += flux;
+  }
+  patches_ = LightTree(bounds, Falloff::cosine, extent);
+
+  bounds.clear();
+  for_each_lamp(lights, [&](const auto& lamp, std::size_t) {
+    bounds.push_back(bounds_of(lamp));
+    lamps_power_ += luminous_mean(power(lamp));
+  });
+  if (lamps_power_ > 0) lamps_ = LightTree(bounds, Falloff::none, extent);
+  for (const Sun& sun : lights.suns) suns_power_ += luminous_mean(sun.normal_irradiance) * cross_section(problem.rays);
+}
+
+LightSampler::Shares LightSampler::shares(const Vec3& p, const Vec3& n) const {
+  if (lamps_power_ == 0 && suns_power_ == 0) return {1, 0, 0};
+  Shares s;
+  if (patches_.reaches(p, n)) s.patches = patches_power_;
+  if (lamps_power_ > 0 && lamps_.reaches(p, n)) s.lamps = lamps_power_;
+  for (const Sun& sun : problem_.lights.suns)
+    if (dot(n, sun.direction) > -0.01) s.suns = suns_power_;  // the disc is half a degree wide
+  const double sum = s.patches + s.lamps + s.suns;
+  if (!(sum > 0)) return {};
+  // Half of the choice is even: power says little about a lamp indoors beside a sun that does not get in.
+  const int groups = (s.patches > 0) + (s.lamps > 0) + (s.suns > 0);
+  for (double* share : {&s.patches, &s.lamps, &s.suns})
+    if (*share > 0) *share = (*share / sum + 1.0 / groups) / 2;
+  return s;
+}
+
+LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, double u, double v,
+                                 bool emitters_only) const {
+  if (emitters_only) return on_patch(p, n, pick, u, v, 1);
+  const Shares s = shares(p, n);
+  const double lamps_end = s.patches + s.lamps;
+  if (pick < s.patches) return on_patch(p, n, pick / s.patches, u, v, s.patches);
+  if (s.lamps > 0 && (pick < lamps_end || !(s.suns > 0)))
+    return on_lamp(p, n, (pick - s.patches) / s.lamps, u, v, s.lamps);
+  if (s.suns > 0) return on_sun(p, n, (pick - lamps_end) / s.suns, u, v, s.suns);
+  return s.patches > 0 ? on_patch(p, n, pick, u, v, s.patches) : LightSample{};
+}
+
+LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
+  const LightTree::Choice choice = patches_.choose(p, n, pick);
+  if (!(choice.probability > 0)) return {};
+  const double probability = share * choice.probability;
+  const PatchId q{bright_[choice.light]};
+  const Vec3 normal = problem_.patches.normal[q];
+  const Vec3 point = point_on_triangle(problem_.patches.corner_positions(q), u, v);
+  const double kernel = point_kernel(p, n, point, normal);
+  if (kernel == 0) return {};
+  const Vec3 d = point - p;
+  const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
+  return {point + normal * problem_.rays.lift(), glow_[q] * (kernel * area / probability),
+          probability * r2 / (cos_q * area), q};
+}
+
+LightSample LightSampler::on_lamp(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
+  const LightTree::Choice choice = lamps_.choose(p, n, pick);
+  if (!(choice.probability > 0)) return {};
+  return with_lamp(problem_.lights, choice.light, [&](const auto& lamp) -> LightSample {
+    const Vec3 q = light_point(lamp, p, u, v);
+    const double probability = share * choice.probability;
+    return {short_of(q, p, problem_.rays.lift()), open_irradiance(lamp, q, p, n) / probability, 0, {}, lamp.mirror};
+  });
+}
+
+LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
+  double left = pick * suns_power_ / cross_section(problem_.rays);
+  const Sun* sun = nullptr;
+  double power = 0;
+  for (const Sun& candidate : problem_.lights.suns) {
+    const double candidate_power = luminous_mean(candidate.normal_irradiance);
+    if (!(candidate_power > 0)) continue;
+    if (sun) left -= power;
+    sun = &candidate, power = candidate_power;
+    if (left < power) break;
+  }
+  const Vec3 d = direction_to_sun(*sun, u, v);
+  const double cos_n = dot(n, d), probability = share * power * cross_section(problem_.rays) / suns_power_;
+  if (!(cos_n > 0)) return {};
+  return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}, sun->mirror};
+}
+
+double LightSampler::density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
+                             bool emitters_only) const {
+  if (!(cos_q > 0)) return 0;
+  const double share = emitters_only ? 1.0 : shares(p, n).patches;
+  return share * patches_.probability(number_of_patch_[q], p, n) * distance * distance /
+         (cos_q * problem_.patches.area[q]);
+}
+
+Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const {
+  const RayScene& rays = problem_.rays;
+  Spectrum E(0.0);
+  SegmentPacket segments;
+  std::array<Vec3, 16> end;
+  std::array<Spectrum, 16> open;
+  unsigned queued = 0;
+  const auto flush = [&] {
+    if (queued < 3) {  // single rays cost less than a packet that is nearly empty
+      for (unsigned k = 0; k < queued; ++k) E += open[k] * rays.transmittance(p, end[k]);
+      queued = 0;
+      return;
+    }
+    for (unsigned seen = rays.visible16(segments, static_cast<std::uint16_t>((1u << queued) - 1)); seen;
+         seen &= seen - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(seen));
+      E += open[k] * rays.glass_transmittance(p, end[k]);
+    }
+    queued = 0;
+  };
+  const auto look = [&](const Vec3& to, const Spectrum& irradiance, std::uint32_t mirror) {
+    if (irradiance.is_black()) return;
+    if (mirror != kNoMirror) {
+      E += irradiance * rays.transmittance_by_mirror(p, to, mirror);
+      return;
+    }
+    segments.set(static_cast<int>(queued), p, to);
+    end[queued] = to, open[queued] = irradiance;
+    if (++queued == 16) flush();
+  };
+  // In the tree's order lamps that share a packet are neighbours.
+  const double lift = rays.lift();
+  for (const std::uint32_t number : lamps_.order()) {
+    with_lamp(problem_.lights, number, [&](const auto& lamp) {
+      const int count = opening_rays(lamp, p);
+      if (count == 1) {
+        look(short_of(lamp.position, p, lift), open_irradiance(lamp, p, n), lamp.mirror);
+        return;
+      }
+      for (int k = 0; k < count; ++k) {
+        const OpeningPlace at = opening_place(lamp, k, count);
+        const Vec3 q = light_point(lamp, p, at.u, at.v);
+        look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight, lamp.mirror);
+      }
+    });
+  }
+  flush();
+  for (const Sun& sun : problem_.lights.suns) {
+    for (int k = 0; k < sun_rays; ++k) {
+      const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+      const Vec3 d = direction_to_sun(sun, u[0], u[1]);
+      look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays), sun.mirror);
+    }
+    flush();
+  }
+  return E;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,66 @@
+#pragma once
+// All lights that are worth a shadow ray, chosen by what they can give where they are asked for.
+
+#include <vector>
+
+#include "solver/illumination/problem.h"
+#include "solver/lights/light_tree.h"
+#include "solver/lights/sky.h"
+
+namespace clerestory {
+
+/// A patch is sampled like a light when it is brighter than kBrighter times the median over the area of all surfaces;
+/// dimmer ones are found well enough by the bundle that looks for reflected light. The median and not the mean: a
+/// facade in the sun must not hide the sun's patch in the room behind it.
+inline constexpr double kBrighter = 4;
+
+/// One point of a light, as seen from where its light is asked for.
+struct LightSample {
+  Vec3 end;             ///< where the shadow ray goes to, lifted [m]
+  Spectrum irradiance;  ///< at the receiver when nothing blocks, divided by the density of the choice
+  double density = 0;   ///< of choosing this direction, per solid angle; 0 for lights that a bundle cannot hit
+  PatchId patch;        ///< the bright patch it lies on; invalid for other lights
+  std::uint32_t mirror = kNoMirror;  ///< the mirror that shows it, of an image
+};
+
+class LightSampler {
+ public:
+  /// glow  N x channels, what the patches send out of themselves: M for paths, which find reflected light on their way;
+  ///       B for a gather, where the sun's patch on the floor is as much of a lamp as the lamp. Outlives the sampler.
+  LightSampler(const Problem& problem, const Field& glow);
+
+  bool empty() const { return bright_.empty() && lamps_.empty() && suns_power_ == 0; }
+  bool has_emitters() const { return !bright_.empty(); }
+  const Field& glow() const { return glow_; }
+  bool is_explicit(PatchId p) const { return has_emitters() && number_of_patch_[p] != LightTree::kNone; }
+
+  /// Light chosen by `pick` in [0, 1), and the point (u, v) of it, for receiver point p with normal n. Glowing patches
+  /// only when `emitters_only`; otherwise patches, luminaires and suns share the choice by their power first.
+  LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool emitters_only) const;
+
+  /// Density per solid angle with which sample() would choose, at p with normal n, the direction that ends on the
+  /// explicit patch q at `distance`, `cos_q` being the cosine there.
+  double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q, bool emitters_only) const;
+
+  /// Irradiance at p of luminaires and of the sun: a shadow ray to each lamp, more to openings that are near, sun_rays
+  /// to each sun.
+  Spectrum small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
+
+ private:
+  struct Shares {
+    double patches = 0, lamps = 0, suns = 0;  ///< probabilities, sum 1
+  };
+  Shares shares(const Vec3& p, const Vec3& n) const;
+  LightSample on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+  LightSample on_lamp(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+  LightSample on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+
+  const Problem& problem_;
+  const Field& glow_;
+  LightTree patches_, lamps_;                                    ///< of bright_; of all luminaires, by number
+  std::vector<std::uint32_t> bright_;                            ///< patches sampled like lights
+  std::vector<std::uint32_t> number_of_patch_;                   ///< N, number in bright_ or kNone; empty without any
+  double patches_power_ = 0, lamps_power_ = 0, suns_power_ = 0;  ///< [W]
+};
+
+}  // namespace clerestory

@@ -1,0 +1,147 @@
+#include "solver/methods/hierarchical_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+/// Mean of sun and lamp light over leaves of one element, and whether it varies among their corners.
+struct SmallLights {
+  Spectrum mean;
+  bool varies = false;
+};
+
+SmallLights small_lights(const ElementMesh& mesh, std::span<const std::uint32_t> leaves, const VertexField& field) {
+  constexpr double kVaries = 0.1;  // less is left to the vertices, which know it as well
+  SmallLights found;
+  double low = std::numeric_limits<double>::infinity(), high = 0, share = 0;
+  for (const std::uint32_t leaf : leaves) {
+    const double part = std::ldexp(1.0, -mesh[leaf].level);
+    for (const std::uint32_t p : mesh[leaf].point) {
+      if (!field.known[p]) return {};
+      const Spectrum lamps = field.small_lights[p];
+      found.mean += lamps * (part / 3);
+      low = std::min(low, luminous_mean(lamps)), high = std::max(high, luminous_mean(lamps));
+    }
+    share += part;
+  }
+  found.mean *= 1 / share;
+  found.varies = high - low > kVaries * high;
+  return found;
+}
+
+Field without_small_lights(const VertexField& field) {
+  Field rest = field.E;
+  for (std::size_t k = 0; k < rest.value.size(); ++k) rest.value[k] -= field.small_lights.value[k];
+  return rest;
+}
+
+/// Irradiance of the leaves from that at their vertices; where sun or lamp light varies among the corners of what was
+/// one element for transport, their mean of it is put right by the exact flux that the transport found there.
+Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
+                      const HierarchicalSolution& coarse, const VertexField& field) {
+  Field E = leaf_irradiance(mesh, field.E);
+  if (coarse.small_lights.value.empty()) return E;
+  const Field rest = leaf_irradiance(mesh, without_small_lights(field));
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  std::size_t begin = 0;
+  for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
+    const auto own = std::span(leaves).subspan(begin, mesh.leaves_under(transport_leaves[j]));
+    const SmallLights gathered = small_lights(mesh, own, field);
+    for (std::size_t k = 0; k < own.size() && gathered.varies; ++k)
+      for (int c = 0; c < E.channels; ++c) {
+        double lamps = 0;
+        for (const std::uint32_t p : mesh[own[k]].point) lamps += field.small_lights.at(p, c) / 3;
+        // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
+        const double exact = coarse.small_lights.at(j, c), mean = gathered.mean[c];
+        E.at(begin + k, c) = rest.at(begin + k, c) + (mean > 0 ? lamps * exact / mean : exact);
+      }
+    begin += own.size();
+  }
+  return E;
+}
+
+/// Scales what the field has of all light but that of sun and lamps, so that its flux is that of the transport: the
+/// vertices share their directions, and so a small error, while the bundles of the elements are independent of each
+/// other. What differs by more is no such error, and stays.
+void correct_flux(const HierarchicalSolution& coarse, const Field& E, const ElementMesh& mesh, VertexField& field) {
+  constexpr double kMost = 0.01;
+  if (!field.complete || coarse.small_lights.value.empty()) return;
+  if (std::find(field.known.begin(), field.known.end(), false) != field.known.end()) return;
+  const Field rest = without_small_lights(field);
+  const Field on_leaves = leaf_irradiance(mesh, rest);
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  for (int c = 0; c < rest.channels; ++c) {
+    double found = 0, exact = 0;
+    for (std::size_t j = 0; j < coarse.elements.patch_count(); ++j)
+      exact += coarse.elements.area[j] * (E.at(j, c) - coarse.small_lights.at(j, c));
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+      found += std::ldexp(mesh.patches().area[mesh[leaves[i]].patch], -mesh[leaves[i]].level) * on_leaves.at(i, c);
+    const double ratio = found > 0 ? exact / found : 1;
+    if (std::abs(ratio - 1) > kMost) continue;
+    for (std::size_t p = 0; p < rest.size(); ++p)
+      field.E.at(p, c) = field.small_lights.at(p, c) + ratio * rest.at(p, c);
+  }
+}
+
+/// Points not gathered take the mean of the elements around them, middles that of the ends they stand between.
+void fill_unknown(const ElementMesh& mesh, const std::vector<std::uint32_t>& transport_leaves, const PatchSet& elements,
+                  const Field& E, VertexField& field) {
+  std::vector<double> area(field.E.size(), 0.0);
+  for (std::size_t j = 0; j < transport_leaves.size(); ++j)
+    for (const std::uint32_t p : mesh[transport_leaves[j]].point) {
+      if (field.known[p]) continue;
+      field.E.set(p, (field.E[p] * area[p] + E[j] * elements.area[j]) / (area[p] + elements.area[j]));
+      area[p] += elements.area[j];
+    }
+  for (std::size_t p = 0; p < field.E.size(); ++p)
+    if (area[p] == 0 && !field.known[p]) field.E.set(p, (field.E[mesh.ends(p)[0]] + field.E[mesh.ends(p)[1]]) / 2);
+}
+
+void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<3>& out) {
+  std::vector<double> interpolation, noise, halvings;
+  for (const auto& [leaf, off, level, standard_error] : leaf_errors(mesh, field)) {
+    out.shapes.push_back(mesh.corner_positions(leaf));
+    interpolation.push_back(level > 0 ? off / level : 0);
+    noise.push_back(level > 0 ? standard_error / level : 0);
+    halvings.push_back(mesh[leaf].level);
+  }
+  out.values = {{"interpolation_error", interpolation}, {"noise", noise}, {"level", halvings}};
+}
+
+}  // namespace
+
+HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
+                                     const HierarchicalFieldOptions& options, const Monitor& monitor) {
+  ElementMesh mesh(problem.patches, std::move(map));
+  HierarchicalSolution coarse = hierarchical(problem, mesh, options.elements, monitor);
+  const std::vector<std::uint32_t> transport_leaves = mesh.leaves();
+  const Problem transport{coarse.elements, problem.rays, problem.lights};
+  VertexField field = gather_field(transport, coarse.solution.B, mesh, options.vertices, monitor);
+  if (options.elements.debug) view_errors(mesh, field, options.elements.debug->error);
+
+  Solution solution = std::move(coarse.solution);
+  solution.rays += field.rays;
+  solution.log.push_back(std::to_string(transport_leaves.size()) + " elements for transport, " +
+                         std::to_string(mesh.leaf_count()) + " shown on " +
+                         std::to_string(mesh.points().position.size()) + " points");
+  if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
+  correct_flux(coarse, solution.E, mesh, field);
+  fill_unknown(mesh, transport_leaves, coarse.elements, solution.E, field);
+  coarse.elements = {};  // a million of them are a third of a gigabyte
+  solution.E = field_on_leaves(mesh, transport_leaves, coarse, field);
+  HierarchicalField out{mesh.leaf_patches(), std::move(mesh).leaf_lightmap(), {}};
+  out.lightmap.E = std::move(field.E);
+  solution.B = Field(out.elements.patch_count(), out.elements.channels);
+  for (std::size_t i = 0; i < out.elements.patch_count(); ++i)
+    solution.B.set(i, out.elements.M[i] + out.elements.scattered(solution.E, i));
+  out.solution = std::move(solution);
+  return out;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solver/geometry/polygon.h"
+#include "solver/lights/sky.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/openings/openings.h"
+#include "solver/openings/rims.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::uint64_t kGapRays = 0x81;
+constexpr int kFewRays = 16, kRays = 128;  ///< to a side, to sift and to judge
+constexpr double kSeesSky = 0.1;           ///< share of the rays out that meet sky
+constexpr double kIndoors = 0.2;           ///< most of the rays in that do
+constexpr double kWideOpen = 0.5;          ///< and those that do so mostly are preferred
+constexpr double kNew = 0.1;               ///< of the rays out, those that see sky which no other opening shows
+constexpr std::size_t kMostCorners = 256;
+constexpr std::size_t kMostCandidates = 5000;  ///< good ones, the best
+constexpr std::size_t kMostTriangles = 2'000'000, kMostOpenings = 500;
+
+struct SkySeen {
+  double share = 0, radiance = 0;  ///< of the rays that escape through air or glass; mean of what they see
+};
+
+class Judge {
+ public:
+  Judge(const PatchSet& patches, const RayScene& rays, const SkyRadiance& sky)
+      : patches_(patches), rays_(rays), sky_(sky) {}
+
+  SkySeen sky_from(const LightArea& o, const Vec3& side, int count, std::uint64_t key) const {
+    SkySeen seen;
+    for (int k = 0; k < count; ++k) {
+      const Ray ray = ray_through(o, side, key, static_cast<std::uint32_t>(k), rays_.lift());
+      const Hit hit = rays_.first_hit(patches_, ray);
+      if (!hit.escaped() || hit.transmittance.is_black()) continue;
+      seen.share += 1.0 / count;
+      seen.radiance += luminous_mean(sky_(hit.direction(ray)) * hit.transmittance) / count;
+    }
+    if (seen.share > 0) seen.radiance /= seen.share;
+    return seen;
+  }
+
+  /// Turns the normal into the room. returns the share of rays out that see sky; 0: no opening between a room and it.
+  double judge(LightArea& o, std::uint64_t key) const {
+    double share = 0;
+    for (const int count : {kFewRays, kRays}) {
+      SkySeen front = sky_from(o, o.normal, count, key), back = sky_from(o, -o.normal, count, key + 2);
+      if (front.share > back.share) {
+        o.normal = -o.normal;
+        for (auto& t : o.triangles) std::swap(t[1], t[2]);
+        std::reverse(o.corners.begin(), o.corners.end());
+        std::swap(front, back);
+      }
+      if (!(back.share > kSeesSky) || !(front.share < kIndoors)) return 0;
+      o.brightness = back.radiance;
+      share = o.brightness > 0 ? back.share : 0;
+    }
+    return share;
+  }
+
+  /// Whether sky is seen through it that the others do not show.
+  bool shows_more(const LightArea& o, std::span<const LightArea> others, std::uint64_t key) const {
+    int more = 0;
+    for (int k = 0; k < kRays; ++k) {
+      // From a little inside: an opening in the same plane is passed as well.
+      const Ray ray = ray_through(o, -o.normal, key, static_cast<std::uint32_t>(k), rays_.lift());
+      if (!rays_.first_hit(patches_, ray).escaped()) continue;
+      const Vec3 inside = ray.origin - ray.direction * (1e-5 * rays_.diameter());
+      more += std::ranges::none_of(others,
+                                   [&](const LightArea& other) { return way_out(other, inside, ray.direction) >= 0; });
+    }
+    return more > kNew * kRays;
+  }
+
+ private:
+  const PatchSet& patches_;
+  const RayScene& rays_;
+  const SkyRadiance& sky_;
+};
+
+/// No opening when it has no area.
+LightArea opening_across(const Gap& gap) {
+  LightArea o;
+  if (gap.corners.size() > kMostCorners) return o;
+  const Vec3 area = vector_area(gap.corners);
+  o.area = length(area);
+  if (!(o.area > 0)) return o;
+  o.normal = area / o.area;
+  o.corners = gap.corners;
+  o.triangles = triangulate(gap.corners);
+  const BoundingSphere sphere = bounding_sphere(gap.corners);
+  o.centre = sphere.centre, o.radius = sphere.radius;
+  return o;
+}
+
+}  // namespace
+
+std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights) {
+  if (!lights.sky || patches.triangle_count() > kMostTriangles) return {};
+  const SkyRadiance sky(lights);
+  const Judge judge(patches, rays, sky);
+  struct Candidate {
+    LightArea opening;
+    bool is_hole;
+    double sky = 0;  ///< share of the rays out that see it; 0: no opening
+  };
+  std::vector<Candidate> candidates;
+  for (const Gap& gap : find_gaps(patches, rays)) {
+    LightArea o = opening_across(gap);
+    if (o.area > 0 && !o.triangles.empty()) candidates.push_back({std::move(o), gap.is_hole});
+  }
+  parallel_for(candidates.size(), 8, [&](std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k)
+      candidates[k].sky = judge.judge(candidates[k].opening, stream_key(kGapRays, k));
+  });
+  std::erase_if(candidates, [](const Candidate& c) { return !(c.sky > 0); });
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.is_hole != b.is_hole) return a.is_hole;
+    if ((a.sky > kWideOpen) != (b.sky > kWideOpen)) return a.sky > b.sky;
+    return a.opening.area > b.opening.area;
+  });
+  if (candidates.size() > kMostCandidates) candidates.erase(candidates.begin() + kMostCandidates, candidates.end());
+  std::vector<LightArea> openings;
+  for (std::size_t k = 0; k < candidates.size() && openings.size() < kMostOpenings; ++k)
+    if (judge.shows_more(candidates[k].opening, openings, stream_key(kGapRays + 1, k)))
+      openings.push_back(std::move(candidates[k].opening));
+  // The inner face of a thick wall may have come before the outer one.
+  for (std::size_t k = openings.size(); k > 0; --k) {
+    LightArea opening = std::move(openings[k - 1]);
+    openings.erase(openings.begin() + static_cast<std::ptrdiff_t>(k - 1));
+    if (judge.shows_more(opening, openings, stream_key(kGapRays + 2, k)))
+      openings.insert(openings.begin() + static_cast<std::ptrdiff_t>(k - 1), std::move(opening));
+  }
+  return openings;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,53 @@
+#include "solver/openings/opening_sampler.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "solver/openings/openings.h"
+#include "solver/sampling/polygon_view.h"
+
+namespace clerestory {
+namespace {
+
+LightBounds bounds_of(const LightArea& opening) {
+  LightBounds b{opening.centre, opening.centre, opening.normal, 0,
+                std::numbers::pi * opening.area * opening.brightness};
+  for (const auto& triangle : opening.triangles)
+    for (const Vec3& c : triangle) {
+      b.lower = {std::min(b.lower.x, c.x), std::min(b.lower.y, c.y), std::min(b.lower.z, c.z)};
+      b.upper = {std::max(b.upper.x, c.x), std::max(b.upper.y, c.y), std::max(b.upper.z, c.z)};
+    }
+  return b;
+}
+
+}  // namespace
+
+OpeningSampler::OpeningSampler(std::span<const LightArea> openings, double extent) : openings_(openings) {
+  std::vector<LightBounds> bounds;
+  for (const LightArea& opening : openings) bounds.push_back(bounds_of(opening));
+  tree_ = LightTree(bounds, Falloff::cosine, extent);
+}
+
+OpeningSampler::Sample OpeningSampler::sample(const Vec3& p, const Vec3& n, double pick, double u, double v) const {
+  const LightTree::Choice choice = tree_.choose(p, n, pick);
+  if (!(choice.probability > 0)) return {};
+  const LightArea& opening = openings_[choice.light];
+  if (!(dot(p - opening.centre, opening.normal) > 0)) return {};
+  const PolygonView polygon(p, n, opening.triangles, opening.corners);
+  if (!(polygon.solid_angle() > 0)) return {};
+  const auto [direction, per_share] = polygon.look(u, v);
+  return {direction, per_share / choice.probability, choice.probability / polygon.solid_angle(), choice.light};
+}
+
+double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d, std::uint32_t but) const {
+  double sum = 0;
+  for (std::uint32_t k = 0; k < openings_.size(); ++k) {
+    const LightArea& opening = openings_[k];
+    if (k == but || way_out(opening, p, d) < 0) continue;
+    const double solid_angle = PolygonView(p, n, opening.triangles, opening.corners).solid_angle();
+    if (solid_angle > 0) sum += tree_.probability(k, p, n) / solid_angle;
+  }
+  return sum;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,87 @@
+#include "solver/openings/openings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solver/form_factors/point_to_polygon.h"
+#include "solver/model/random_stream.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+
+double way_out(const LightArea& opening, const Vec3& p, const Vec3& d) {
+  const double towards = -dot(d, opening.normal);
+  if (!(towards > 0)) return -1;
+  const Vec3 to_centre = opening.centre - p;
+  const double along = dot(to_centre, d);
+  if (dot(to_centre, to_centre) - along * along > opening.radius * opening.radius) return -1;  // passes by its sphere
+  const double t = dot(p - opening.centre, opening.normal) / towards;
+  if (!(t > 0)) return -1;
+  const Vec3 x = p + d * t;
+  for (const auto& [a, b, c] : opening.triangles) {
+    const double ab = dot(cross(b - a, x - a), opening.normal), bc = dot(cross(c - b, x - b), opening.normal),
+                 ca = dot(cross(a - c, x - c), opening.normal);
+    if (ab >= 0 && bc >= 0 && ca >= 0) return t;
+  }
+  return -1;
+}
+
+std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
+                            const Vec3& d, double distance) {
+  for (const std::uint32_t k : numbers) {
+    const double out = way_out(openings[k], p, d);
+    if (out >= 0 && out <= distance) return k;
+  }
+  return kNoOpening;
+}
+
+double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n) {
+  const Vec3 d = opening.centre - p;
+  const double height = -dot(d, opening.normal), above = dot(d, n) + opening.radius;
+  if (!(height > 0) || !(above > 0)) return 0;
+  const double r = length(d), nearest = r - opening.radius;
+  if (nearest < opening.radius) return 1;
+  const double cos_p = std::min(1.0, above / nearest), cos_o = std::min(1.0, height / nearest);
+  return opening.area * cos_p * cos_o / (std::numbers::pi * nearest * nearest);
+}
+
+double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n) {
+  double F = 0;
+  for (const auto& triangle : opening.triangles) F += point_to_polygon(p, n, triangle);
+  return F;
+}
+
+Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {
+  const auto u = sobol4(k, key);
+  double left = sobol4(k, key + 1)[0] * opening.area;
+  const auto* triangle = &opening.triangles.front();
+  for (const auto& t : opening.triangles) {
+    triangle = &t;
+    const double area = length(cross(t[1] - t[0], t[2] - t[0])) / 2;
+    if (left < area) break;
+    left -= area;
+  }
+  return {point_on_triangle(*triangle, u[0], u[1]) + side * lift, cosine_direction(Frame(side), u[2], u[3])};
+}
+
+std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
+                                      std::size_t most, double least_of_best) {
+  constexpr double kNothing = 1e-9;
+  std::vector<std::pair<double, std::uint32_t>> found;  // by light, the most first
+  for (std::uint32_t k = 0; k < openings.size(); ++k) {
+    const double L = openings[k].brightness, bound = most_it_gives(openings[k], p, n);
+    if (!(bound > kNothing) || (found.size() == most && bound * L <= -found.back().first)) continue;
+    const double F = form_factor(openings[k], p, n);
+    if (!(F > kNothing)) continue;
+    found.insert(std::upper_bound(found.begin(), found.end(), std::pair{-F * L, k}), {-F * L, k});
+    if (found.size() > most) found.pop_back();
+  }
+  std::vector<std::uint32_t> numbers;
+  for (const auto& [F, k] : found)
+    if (F <= least_of_best * found.front().first) numbers.push_back(k);
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+}  // namespace clerestory

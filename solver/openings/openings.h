@@ -1,0 +1,50 @@
+#pragma once
+// Gaps between surfaces through which the sky looks in: found once, then looked at like lamps.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/model/light_spec.h"
+#include "solver/model/patch_set.h"
+#include "solver/visibility/ray_scene.h"
+
+namespace clerestory {
+
+/// Where the ray from p along d (unit) passes the opening on its way out [m]; negative: it does not.
+double way_out(const LightArea& opening, const Vec3& p, const Vec3& d);
+
+inline constexpr std::uint32_t kNoOpening = 0xffffffff;
+
+/// The first of `numbers`, in their order, that the ray passes before it meets a surface at `distance`, and that its
+/// light therefore belongs to; kNoOpening: to none.
+std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
+                            const Vec3& d, double distance);
+
+/// Upper bound of the form factor [1] from a surface element at p with normal n to the opening; 0 from outside of it.
+double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n);
+
+/// Form factor [1] of the opening when nothing blocks it; 0 from outside of it.
+double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n);
+
+/// The openings (or panels) that may matter at p: up to `most` of the largest form factors times brightness, in the
+/// order of their numbers; none that gives less than the share least_of_best of the first.
+std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
+                                      std::size_t most, double least_of_best);
+
+/// Ray k of a sequence through points all over the opening, cosine-distributed around `side`, which is its normal or
+/// the opposite.
+Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift);
+
+/// The gaps in the surfaces that have the sky on one side and a room on the other: windows, doors, rooflights, slits.
+///
+/// A rim is an edge of a surface beyond which its plane goes on as air. Rims that close to a loop bound a hole; from
+/// other rims the strip to what stands opposite in that plane is tried. Of these, those are kept that see the sky on
+/// one side and not much of it on the other, and see what no larger one shows. Glass is air here.
+///
+/// patches  conforming; rays: of them. lights: local frame; empty result without a sky.
+/// Threads: same result for any thread count. Cost: O(T log T) and 3 to 21 rays an edge of a surface, for the 20,000
+/// longest; models of more than two million triangles are not searched.
+std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights);
+
+}  // namespace clerestory

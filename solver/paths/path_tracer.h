@@ -1,0 +1,58 @@
+#pragma once
+// One random path: the unbiased estimate that judges all other methods.
+
+#include "solver/illumination/illumination.h"
+#include "solver/model/monitor.h"
+#include "solver/model/point_irradiance.h"
+#include "solver/model/random_stream.h"
+
+namespace clerestory {
+
+/// Mean and spread of random estimates, summed so that rounds can be added.
+struct PathSum {
+  Spectrum sum, sum_of_squares;
+  double count = 0;
+
+  void add(const Spectrum& x) {
+    sum += x;
+    sum_of_squares += x * x;
+    ++count;
+  }
+  Spectrum mean() const { return count > 0 ? sum / count : Spectrum(0.0); }
+  /// Of the mean. Stratification makes the true error smaller than this.
+  Spectrum std_error() const;
+};
+
+/// Numbers in [0, 1) that a path starts with, stratified over the paths by the caller.
+struct PathStart {
+  std::array<double, 2> direction;  ///< of the first ray
+  std::array<double, 3> light;      ///< choice and point of the light that shines on the first point
+  std::array<double, 3> opening;    ///< choice of an opening, and direction through it
+};
+/// That of path k; directions are given, for callers that also spread the points.
+PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, std::uint64_t key);
+
+/// Irradiance [W/m2] at point p (lifted) with unit normal n, by one path of any length:
+///   E(x) = lights(x) + sky + sum over bounces of the product of rho times the same at the next point
+/// A light is chosen for a shadow ray at every bounce, and an opening for one at the sky; glowing patches and that sky
+/// are met by scattered rays as well, weighted by the balance heuristic (Veach & Guibas 1995). Russian roulette ends
+/// paths that carry little, so there is no bias; it comes after the shadow ray and late, because ending a path in two
+/// halves and doubling the other is most of the noise.
+///
+/// rays   is raised by the rays traced.
+Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
+                    unsigned long long& rays);
+
+/// Irradiance at the fixed point p and its standard error, from independent replicates of stratified paths: the spread
+/// between replicates counts what stratification gains, which the spread of single paths does not.
+struct PathEstimate {
+  Spectrum E, std_error;
+};
+PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
+                                  unsigned long long& rays);
+
+/// The same at each of `count` places.
+PointIrradiance trace_paths_at(const Illumination& light, std::size_t count, const PointOf& point_of, int paths,
+                               std::uint64_t key, std::string_view stage, const Monitor& monitor = {});
+
+}  // namespace clerestory

@@ -1,0 +1,182 @@
+#include "solver/run/solve.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "solver/gather/gather.h"
+#include "solver/illumination/direct.h"
+#include "solver/methods/form_factor_matrix.h"
+#include "solver/methods/gauss_seidel.h"
+#include "solver/methods/hierarchical_field.h"
+#include "solver/methods/jacobi.h"
+#include "solver/methods/noisy_patches.h"
+#include "solver/methods/path.h"
+#include "solver/methods/progressive.h"
+#include "solver/model/error.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/paths/path_tracer.h"
+#include "solver/run/accuracy.h"
+#include "solver/run/memory_estimate.h"
+#include "solver/spaces/closure.h"
+
+namespace clerestory {
+namespace {
+
+enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
+
+Effort effort_of(const SolveOptions& options) { return effort(options.accuracy, options.tighten); }
+
+MemoryCounts whole(const PatchSet& patches, std::size_t points) {
+  const std::size_t sides = patches.patch_count();
+  return {.triangles = patches.triangle_count(), .sides = sides, .elements = sides, .points = points};
+}
+
+/// How far the hierarchical method may go: as was asked for, or what a limit of memory leaves of it.
+std::optional<MemoryPlan> memory_plan(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options) {
+  const Effort e = effort_of(options);
+  const std::size_t points = map.position.size();
+  const MemoryPlan wish{std::min(20 * points + 10'000, e.most_points), HierarchyOptions{}.most_elements, e.bundle_rays,
+                        e.lamp_rays};
+  if (options.memory_limit == 0) return wish;
+  return plan_memory(whole(patches, points), wish, options.memory_limit);
+}
+
+SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
+                                 const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
+  constexpr MemoryPlan kLeast{0, 0, 32, 16};
+  const Effort e = effort_of(options);
+  const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeast);
+  const double shortest_edge = e.shortest_edge * longest_edge;
+  HierarchicalField field = hierarchical_field(problem, std::move(map),
+                                               {.elements = {.bundle_rays = plan.bundle_rays,
+                                                             .lamp_rays = plan.lamp_rays,
+                                                             .tolerance = e.element_tolerance,
+                                                             .shortest_edge = shortest_edge,
+                                                             .most_elements = plan.most_elements,
+                                                             .seed = options.seed,
+                                                             .debug = debug},
+                                                .vertices = {.tolerance = e.vertex_tolerance,
+                                                             .shortest_edge = shortest_edge,
+                                                             .most_points = plan.most_points,
+                                                             .quality = e.vertices,
+                                                             .seed = options.seed}},
+                                               monitor);
+  return {std::move(field.elements), std::move(field.lightmap), std::move(field.solution)};
+}
+
+/// The matrix methods know light as it arrives; a luminaire's flux that misses the patches belongs to the balance too.
+void count_luminaires(EnergyBalance& energy, const PatchSet& patches, const DirectLight& direct) {
+  double arrived = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) arrived += patches.area[i] * luminous_mean(direct.E[i]);
+  energy.emitted += direct.energy.emitted - arrived;
+  energy.escaped += direct.energy.escaped;
+  energy.absorbed += direct.energy.absorbed;
+}
+
+FormFactorOptions matrix_options(const PatchSet& patches, const SolveOptions& options) {
+  FormFactorOptions matrix{.seed = options.seed};
+  if (options.memory_limit > 0) {
+    const std::size_t rest = predicted_memory(whole(patches, patches.patch_count()));
+    matrix.memory_limit = options.memory_limit > rest ? options.memory_limit - rest : 1;
+  }
+  return matrix;
+}
+
+/// Before anything is computed: a matrix that cannot be is no news to wait for.
+void require_matrix(const Problem& problem, const SolveOptions& options) {
+  require_matrix_fits(problem.patches.patch_count(), matrix_options(problem.patches, options));
+  if (problem.rays.has_mirrors())
+    throw InputError(
+        "the scene has mirrors, which form factors do not see; use --method hierarchical, progressive or path");
+}
+
+/// Irradiance at places by the method of the solution.
+PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, std::size_t count,
+                              const PointOf& point_of, const GatherQuality& quality, int paths, StreamKind kind,
+                              std::string_view stage, const SolveOptions& options, const Monitor& monitor) {
+  if (options.method == Method::path)
+    return trace_paths_at(Illumination(problem), count, point_of, paths, stream_key(options.seed, kind), stage,
+                          monitor);
+  return gather_at(gather_illumination(problem, solution.B), count, point_of, GatherPattern(quality, options.seed),
+                   stage, monitor);
+}
+
+}  // namespace
+
+double target_triangles(const SolveOptions& options) {
+  const Effort e = effort(options.accuracy);
+  return options.method == Method::hierarchical ? e.triangles_to_halve : e.triangles;
+}
+
+bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options) {
+  if (options.method == Method::hierarchical) return memory_plan(patches, map, options).has_value();
+  return options.memory_limit == 0 || predicted_memory(whole(patches, map.position.size())) <= options.memory_limit;
+}
+
+Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor) {
+  const Effort e = effort_of(options);
+  if (options.method == Method::gauss_seidel || options.method == Method::jacobi) require_matrix(problem, options);
+  const Illumination light(problem);
+  DirectOptions direct_options = e.direct;
+  direct_options.seed = options.seed;
+  const DirectLight direct = direct_light(light, direct_options, monitor);
+  const auto closure = [&] {
+    constexpr int kLate = 16;
+    monitor.report("closure", 0);
+    return measure_closure(problem.patches, problem.rays, monitor.should_stop() ? kLate : e.closure_rays, options.seed);
+  };
+  if (options.method == Method::path) return path_trace(light, direct, closure(), {e.paths, options.seed}, monitor);
+  if (options.method == Method::progressive) {
+    constexpr double kFewestRays = 64;  // a patch met by fewer is known to worse than 12 %
+    Solution solution =
+        shoot(problem, direct, closure(),
+              {.stop_fraction = e.stop_fraction, .rays_per_patch = e.rays_per_patch, .seed = options.seed}, monitor);
+    const std::size_t gathered =
+        gather_noisy_patches(problem, solution, kFewestRays, e.noisy_patches, options.seed, monitor);
+    solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
+    return solution;
+  }
+  const FormFactorMatrix F =
+      form_factor_matrix(problem.patches, problem.rays, matrix_options(problem.patches, options), monitor);
+  const auto gather = options.method == Method::jacobi ? jacobi : gauss_seidel;
+  Solution solution = gather(problem.patches, F, direct.E, {}, monitor);
+  count_luminaires(solution.energy, problem.patches, direct);
+  solution.rays += direct.rays + F.rays;
+  return solution;
+}
+
+SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
+                    const Monitor& monitor, HierarchyDebug* debug) {
+  if (options.method == Method::hierarchical)
+    return solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug);
+  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor)};
+  auto& [elements, lightmap, solution] = solved;
+  average_to_points(problem.patches, solution.E, lightmap);
+  const Effort e = effort_of(options);
+  if (!e.gathers_vertices || monitor.should_stop()) return solved;
+  const PointIrradiance at_samples =
+      irradiance_at(problem, solution, lightmap.sample_position.size(), sample_points(lightmap, problem.rays),
+                    e.vertices, e.paths, kVertexRays, "vertices", options, monitor);
+  set_points(at_samples, lightmap);
+  solution.rays += at_samples.rays;
+  return solved;
+}
+
+PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& solution,
+                                      std::span<const SensorPoint> points, const SolveOptions& options,
+                                      const Monitor& monitor) {
+  const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
+  const auto by = [&](const Effort& e, const Monitor& m) {
+    return irradiance_at(problem, solution, points.size(), point_of, e.sensors, e.paths_of_sensor, kSensorRays,
+                         "sensors", options, m);
+  };
+  PointIrradiance at_points = by(effort_of(options), monitor);
+  if (at_points.complete()) return at_points;
+  Monitor patient;
+  patient.progress = monitor.progress;
+  return by(effort(Accuracy::draft, options.tighten), patient);
+}
+
+}  // namespace clerestory

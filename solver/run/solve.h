@@ -1,0 +1,62 @@
+#pragma once
+// Problem -> solved patches, irradiance at sensors and measured errors, by the method and accuracy asked for.
+
+#include <cstdint>
+#include <span>
+
+#include "solver/illumination/problem.h"
+#include "solver/model/hierarchy_debug.h"
+#include "solver/model/method.h"
+#include "solver/model/monitor.h"
+#include "solver/model/point_irradiance.h"
+#include "solver/model/sensors.h"
+#include "solver/model/solution.h"
+#include "solver/model/vertex_lightmap.h"
+
+namespace clerestory {
+
+struct SolveOptions {
+  Method method = Method::hierarchical;
+  Accuracy accuracy = Accuracy::standard;
+  std::uint64_t seed = 1;
+  std::size_t memory_limit = 0;  ///< the peak of the process stays below by making the result coarser [bytes]; 0: none
+  int tighten = 0;               ///< times that the effort was raised to reach a target error (accuracy.h)
+};
+
+/// Triangles to aim for when no longest edge is given.
+double target_triangles(const SolveOptions& options);
+
+/// Whether a limit of memory leaves room for a solve on these patches, matrices aside.
+bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options);
+
+struct SolvedPatches {
+  PatchSet elements;        ///< leaf elements, each on a triangle of its own; empty: they are the problem's patches
+  VertexLightmap lightmap;  ///< of the elements, E filled
+  Solution solution;        ///< of the elements
+};
+
+/// Solves by the method asked for, and shows the result at vertices.
+///
+/// map           the lightmap of problem.patches.
+/// longest_edge  of the patches [m]; the hierarchical method halves them down to a share of it.
+/// debug         filled by the hierarchical method where it is asked for; nothing is computed for it otherwise.
+/// throws        InputError when the method needs more memory than there is, or cannot do what the scene has.
+/// Stops early when the monitor says so, and returns what is solved so far, marked in Solution::stop; vertices that
+/// were not reached then show the mean of their elements.
+/// Threads: same bits for any thread count.
+SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
+                    const Monitor& monitor = {}, HierarchyDebug* debug = nullptr);
+
+/// The first half of that for any method but the hierarchical one, which makes elements of its own: radiosity and
+/// irradiance of every patch.
+Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor = {});
+
+/// Irradiance at each sensor point itself, by gather_point(), or by paths where these are the method. Every point gets
+/// a value, however little time there is: a rough one when the monitor stops the good ones.
+///
+/// problem  with the elements that the solution belongs to. points: in the scene's frame.
+PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& solution,
+                                      std::span<const SensorPoint> points, const SolveOptions& options,
+                                      const Monitor& monitor = {});
+
+}  // namespace clerestory

@@ -1,0 +1,53 @@
+#include "solver/spaces/closure.h"
+
+#include <array>
+
+#include "solver/model/disjoint_sets.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+
+Closure measure_closure(const PatchSet& patches, const RayScene& rays, int rays_per_patch, std::uint64_t seed) {
+  constexpr std::uint64_t kClosureRays = 0x21;
+  const std::size_t n = patches.patch_count();
+  Closure closure;
+  closure.arrives = closure.escapes = Field(n, patches.channels);
+  closure.rays = n * static_cast<std::size_t>(rays_per_patch);
+  // The first few neighbours of each patch are enough to tell spaces apart.
+  constexpr int kNeighbours = 16;
+  std::vector<std::array<PatchId, kNeighbours>> neighbours(n);
+  parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Frame frame(patches.normal[i]);
+      const auto corners = patches.corner_positions(PatchId{i});
+      Spectrum arrives(0.0), escapes(0.0);
+      for (int k = 0; k < rays_per_patch; ++k) {
+        const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(seed, kClosureRays, i));
+        const Hit hit = rays.first_hit(patches, {point_on_triangle(corners, u[2], u[3]) + frame.n * rays.lift(),
+                                                 cosine_direction(frame, u[0], u[1])});
+        if (hit.escaped()) escapes += hit.transmittance;
+        if (hit.patch.valid()) arrives += hit.transmittance;
+        if (k < kNeighbours) neighbours[i][static_cast<std::size_t>(k)] = hit.patch;
+      }
+      closure.arrives.set(i, arrives / rays_per_patch);
+      closure.escapes.set(i, escapes / rays_per_patch);
+    }
+  });
+
+  DisjointSets spaces(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const PatchId q : neighbours[i])
+      if (q.valid()) spaces.join(i, q);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const PatchSet::Behind& other : patches.patches_behind(i)) spaces.join(i, other.patch);
+  closure.space.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t root = spaces.find(i);
+    closure.space[i] = root == i ? static_cast<std::uint32_t>(closure.spaces++) : closure.space[root];
+  }
+  return closure;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,283 @@
+#include "solver/spaces/lit_sides.h"
+
+#include <algorithm>
+#include <array>
+
+#include "solver/illumination/light_sampler.h"
+#include "solver/illumination/panels.h"
+#include "solver/lights/point_lights.h"
+#include "solver/lights/sun.h"
+#include "solver/model/disjoint_sets.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/openings/openings.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t kBlock = 1 << 14;   ///< patches between two looks at what is known by then
+constexpr std::size_t kLampSamples = 64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
+
+enum StreamKind : std::uint64_t { kSideRays = 0x31, kLampRays = 0x32, kLampSearch = 0x33, kOpeningRays = 0x34 };
+
+/// Patches that see each other, and what is known of each such space.
+class Spaces {
+ public:
+  explicit Spaces(const PatchSet& patches) : sets_(patches.patch_count()), of_(patches.patch_count()) {
+    for (std::size_t i = 0; i < of_.size(); ++i) of_[i].only_material = patches.material(PatchId{i});
+  }
+  void see_each_other(const PatchSet& patches, std::size_t p, std::size_t q) {
+    Space& a = of_[sets_.find(p)];
+    a.glows |= !patches.M[p].is_black() || !patches.M[q].is_black();
+    Space& b = of_[sets_.find(q)];
+    sets_.join(p, q);
+    Space& joined = of_[sets_.find(p)];
+    const bool one_material = a.only_material.value == b.only_material.value;
+    joined = {a.lit || b.lit, a.glows || b.glows, one_material ? a.only_material : MaterialId{}};
+  }
+  void light(std::size_t i) { of_[sets_.find(i)].lit = true; }
+
+  bool is_lit(std::size_t i) const { return of_[sets_.name(i)].lit; }
+  bool glows(std::size_t i) const { return of_[sets_.name(i)].glows; }
+  /// Invalid when there are several.
+  MaterialId only_material(std::size_t i) const { return of_[sets_.name(i)].only_material; }
+  /// Takes part, whatever else may be found: nothing that sees it needs to look around for itself.
+  bool is_settled(std::size_t i) const {
+    const Space& s = of_[sets_.name(i)];
+    return s.lit || (s.glows && !s.only_material.valid());
+  }
+
+ private:
+  struct Space {
+    bool lit = false, glows = false;
+    MaterialId only_material;
+  };
+  DisjointSets sets_;
+  std::vector<Space> of_;
+};
+
+/// Patches seen by rays of patch i.
+struct Seen {
+  std::vector<PatchId> patches;  ///< one entry a ray that met one
+  bool outside = false;          ///< a ray left the scene
+  bool sun = false;
+};
+
+/// Ends with the first sight of a space that takes part: then so does patch i.
+Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, int ray_count, std::uint64_t seed) {
+  const PatchSet& patches = problem.patches;
+  const Frame frame(patches.normal[i]);
+  auto corners = patches.corner_positions(PatchId{i});
+  // Off the edges: a start that rounding puts behind the neighbour would join the inside of a solid to the room.
+  const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
+  for (Vec3& corner : corners) corner = centre + (corner - centre) * 0.98;
+  const double lift = problem.rays.lift();
+  const std::uint64_t key = stream_key(seed, kSideRays, i);
+  Seen seen;
+  for (int k = 0; k < ray_count; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+    const Hit hit = problem.rays.first_hit(
+        patches, {point_on_triangle(corners, u[2], u[3]) + frame.n * lift, cosine_direction(frame, u[0], u[1])});
+    seen.outside = seen.outside || hit.escaped();
+    if (!hit.patch.valid()) continue;
+    seen.patches.push_back(hit.patch);
+    if (spaces.is_settled(hit.patch)) return seen;
+  }
+  for (const Sun& sun : problem.lights.suns) {
+    if (sun.mirror != kNoMirror) continue;  // the space is told by rays that mirrors turn
+    for (int k = 0; k < 16 && !seen.sun; ++k) {
+      const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
+      const Vec3 d = direction_to_sun(sun, u[2], u[3]);
+      if (dot(d, frame.n) <= 0) continue;
+      seen.sun =
+          problem.rays.first_hit(patches, {point_on_triangle(corners, u[0], u[1]) + frame.n * lift, d}).escaped();
+    }
+  }
+  return seen;
+}
+
+/// Whether one of the lamps or glowing patches lights patch i without a bounce: for what sees nothing but them.
+struct Found {
+  bool lit = false;              ///< by a luminaire
+  std::vector<PatchId> glowing;  ///< patches that light it
+};
+
+Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
+                     std::uint64_t seed) {
+  const auto corners = problem.patches.corner_positions(PatchId{i});
+  const Vec3 n = problem.patches.normal[i];
+  const double lift = problem.rays.lift();
+  const std::uint64_t key = stream_key(seed, kLampSearch, i);
+  std::array<Vec3, kLampSamples> points;
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    const auto u = sobol4(k, key);
+    points[k] = point_on_triangle(corners, u[0], u[1]) + n * lift;
+  }
+  Found found;
+  const auto look_at = [&](const auto& lamp) {
+    if (lamp.mirror != kNoMirror) return;
+    SegmentPacket segments;
+    unsigned facing = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+      const Vec3& p = points[static_cast<std::size_t>(lane)];
+      const auto u = sobol4(static_cast<std::uint32_t>(lane), key + 1);
+      const Vec3 q = light_point(lamp, p, u[0], u[1]);
+      segments.set(lane, p, short_of(q, p, lift));
+      if (!open_irradiance(lamp, q, p, n).is_black()) facing |= 1u << lane;
+    }
+    if (facing && problem.rays.visible16(segments, static_cast<std::uint16_t>(facing))) found.lit = true;
+  };
+  for_each_lamp(problem.lights, [&](const auto& lamp, std::size_t) { look_at(lamp); });
+  for (std::uint32_t k = 0; k < samples && emitters.has_emitters(); ++k) {
+    const auto u = sobol4(k, key);
+    const LightSample s = emitters.sample(points[k], n, (k + u[2]) / static_cast<double>(samples), u[3], u[0], true);
+    if (s.patch.valid() && !problem.rays.transmittance(points[k], s.end).is_black()) found.glowing.push_back(s.patch);
+  }
+  return found;
+}
+
+/// Sides that rays of the luminaires meet. Many lamps share the rays of sixteen: they stand in the same rooms.
+void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
+  const std::size_t count = problem.lights.lamp_count();
+  if (count == 0) return;
+  const std::size_t rays_each = std::clamp<std::size_t>((1 << 16) / count, 256, 4096);
+  std::vector<PatchId> met(count * rays_each);
+  parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
+    for (std::size_t number = from; number < to; ++number) {
+      const Vec3 position = with_lamp(problem.lights, number, [](const auto& lamp) { return lamp.position; });
+      const std::uint64_t key = stream_key(seed, kLampRays, number);
+      for (std::size_t k = 0; k < rays_each; ++k) {
+        const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+        const Vec3 d = sphere_direction(u[0], u[1]);
+        const Vec3 start = position + d * (20 * problem.rays.lift());
+        const bool dark = with_lamp(problem.lights, number, [&](const auto& lamp) {
+          return lamp.mirror != kNoMirror || intensity(lamp, d).is_black();
+        });
+        if (!dark) met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
+      }
+    }
+  });
+  for (const PatchId patch : met)
+    if (patch.valid()) spaces.light(patch);
+}
+
+/// Sides that rays through the openings meet: of a room behind a slit no ray of its own may find it.
+void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
+  constexpr std::uint32_t kRays = 64;
+  for (std::size_t k = 0; k < problem.lights.openings.size(); ++k) {
+    const LightArea& opening = problem.lights.openings[k];
+    const std::uint64_t key = stream_key(seed, kOpeningRays, k);
+    for (std::uint32_t r = 0; r < kRays; ++r) {
+      const Ray ray = ray_through(opening, opening.normal, key, r, problem.rays.lift());
+      const Hit hit = problem.rays.first_hit(problem.patches, ray);
+      if (hit.patch.valid()) spaces.light(hit.patch);
+    }
+  }
+}
+
+/// Lets the given patches look for luminaires and for the patches that glow.
+void search_lamps(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
+                  std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
+  const LightSampler emitters(problem, glow);
+  for (std::size_t begin = 0; begin < receivers.size() && !monitor.should_stop(); begin += kBlock) {
+    std::vector<Found> found(std::min(kBlock, receivers.size() - begin));
+    parallel_for(found.size(), 32, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k)
+        found[k] = look_for_lamps(problem, emitters, receivers[begin + k], samples, seed);
+    });
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      if (found[k].lit) spaces.light(receivers[begin + k]);
+      for (const PatchId q : found[k].glowing) spaces.see_each_other(problem.patches, receivers[begin + k], q);
+    }
+  }
+}
+
+}  // namespace
+
+LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monitor& monitor) {
+  const PatchSet& patches = problem.patches;
+  const std::size_t n = patches.patch_count();
+  // Enough rays in all that a space of few large patches is not taken apart by chance.
+  const int ray_count = 16 * static_cast<int>(std::clamp<std::size_t>((1 << 15) / std::max<std::size_t>(n, 1), 1, 16));
+
+  Spaces spaces(patches);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const PatchSet::Behind& other : patches.patches_behind(i)) spaces.see_each_other(patches, i, other.patch);
+  light_by_lamps(problem, seed, spaces);
+  light_by_openings(problem, seed, spaces);
+
+  // Emitters first: most patches of a large scene are then met by a ray before it is their turn, and send none, or meet
+  // a space that takes part with their first ray.
+  std::vector<std::uint32_t> waiting;
+  waiting.reserve(n);
+  for (const bool emitting : {true, false})
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (patches.M[i].is_black() != emitting) waiting.push_back(i);
+  std::vector<std::uint32_t> looking;
+  for (std::size_t next = 0; next < n;) {
+    if (monitor.should_stop()) {  // what was not looked at takes part
+      for (; next < n; ++next) spaces.light(waiting[next]);
+      break;
+    }
+    looking.clear();
+    for (; next < n && looking.size() < kBlock; ++next)
+      if (!spaces.is_settled(waiting[next])) looking.push_back(waiting[next]);
+    std::vector<Seen> seen(looking.size());
+    parallel_for(seen.size(), 32, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) seen[k] = look_around(problem, spaces, looking[k], ray_count, seed);
+    });
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      for (const PatchId q : seen[k].patches) spaces.see_each_other(patches, looking[k], q);
+      if (seen[k].sun || (seen[k].outside && problem.lights.sky)) spaces.light(looking[k]);
+    }
+  }
+  waiting = {};
+
+  // In the open a patch may see nothing but lamps, which rays seldom meet.
+  std::vector<std::uint32_t> in_doubt, in_glow;
+  Field lonely(n, patches.channels);  // emitters that have not met what they light
+  bool any_lonely = false;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (spaces.is_lit(i)) continue;
+    (spaces.is_settled(i) ? in_glow : in_doubt).push_back(i);
+    if (spaces.is_settled(i) || patches.M[i].is_black()) continue;
+    lonely.set(i, patches.M[i]);
+    any_lonely = true;
+  }
+  search_lamps(problem, patches.M, in_doubt, kLampSamples, seed, monitor, spaces);
+  if (any_lonely) {
+    // Seldom: the inside of a lamp, which no one finds, or a lamp in the open. So the effort has a bound.
+    const std::size_t samples =
+        std::clamp<std::size_t>((1 << 22) / std::max<std::size_t>(in_glow.size(), 1), 1, kLampSamples);
+    search_lamps(problem, lonely, in_glow, samples, seed, monitor, spaces);
+  }
+
+  std::vector<char> lights_others(patches.materials.size(), 0);
+  for (std::size_t i = 0; i < n; ++i)
+    if (!patches.M[i].is_black() && !spaces.only_material(i).valid()) lights_others[patches.material(PatchId{i})] = 1;
+
+  // Of a wide lamp in the open only the part nearby may have found what it lights.
+  std::vector<std::uint32_t> emitting;
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (!patches.M[i].is_black()) emitting.push_back(i);
+  std::vector<char> goes_on(n, 0);
+  for (const auto& group : plane_groups(patches, emitting))
+    if (std::ranges::any_of(group, [&](std::uint32_t i) { return !spaces.only_material(i).valid(); }))
+      for (const std::uint32_t i : group) goes_on[i] = 1;
+
+  LitSides result;
+  result.wanted.assign(2 * patches.triangle_count(), false);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool lit = spaces.is_lit(i), glows = spaces.glows(i);
+    const MaterialId only = spaces.only_material(i);
+    const bool inside_lamp = !lit && glows && only.valid() && lights_others[only];
+    if (lit || goes_on[i] || (glows && !inside_lamp))
+      result.wanted[2 * patches.triangle[i] + patches.side[i]] = true;
+    else
+      ++(inside_lamp ? result.lamp_interiors : result.dark_sides);
+  }
+  return result;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,99 @@
+#include "solver/gather/gather.h"
+
+#include <gtest/gtest.h>
+
+#include "solver/evaluate/measured_error.h"
+#include "solver/gather/gather_point.h"
+#include "solver/model/random_stream.h"
+#include "solver/paths/path_tracer.h"
+#include "solver/run/accuracy.h"
+#include "tests/support/gather_quality.h"
+#include "tests/support/room_with_blocks.h"
+
+namespace clerestory {
+namespace {
+
+using test::PatchBuilder;
+
+TEST(GatherPoint, IsExactInAFurnace) {
+  test::RoomWithBlocks furnace = test::room_of_2160_patches();
+  furnace.exitance = 3;
+  const PatchSet patches = furnace.build();
+  const RayScene rays(patches);
+  const Lights none;
+  const Problem problem{patches, rays, none};
+  Field B(patches.patch_count(), 1);
+  for (double& b : B.value) b = 6;
+  unsigned long long traced = 0;
+  const Spectrum E = gather_point(Illumination(problem, B), {0.5, 0.5, rays.lift()}, {0, 0, 1},
+                                  GatherPattern(test::gather_quality(), 1), traced)
+                         .E;
+  EXPECT_NEAR(E[0], 6, 1e-9);
+}
+
+TEST(GatherPoint, OfASmallLampAndASmallWindowHasNoBias) {
+  // A dark room open to the sky by a slot, with a lamp of 12 cm under the ceiling: the mean of many gathers must be
+  // the exact irradiance, from the closed forms of both rectangles (Howell C-14: sum of four corner rectangles).
+  PatchBuilder b(0.0);
+  b.material(0.0, 1000).rectangle({1, 1, 1}, {0, 0.12, 0}, {0.12, 0, 0});
+  b.material(0.0, 0);
+  b.rectangle({-3, -3, 2}, {0, 8, 0}, {3, 0, 0}).rectangle({0.05, -3, 2}, {0, 8, 0}, {6, 0, 0});  // slot of 5 cm in x
+  const PatchSet patches = b.build();
+  const RayScene rays(patches);
+  Lights lights;
+  lights.sky = Sky{SkyModel::uniform, Spectrum(100), 0.0};
+  const Problem problem{patches, rays, lights};
+  const Illumination light(problem);
+  Field B(patches.patch_count(), 1);
+  for (std::size_t i = 0; i < B.size(); ++i) B.set(i, patches.M[i]);
+  const Vec3 p{0.4, 0.3, 0}, n{0, 0, 1};
+  double sum = 0, squares = 0;
+  constexpr int kRepeats = 400;
+  unsigned long long traced = 0;
+  for (std::uint64_t k = 0; k < kRepeats; ++k) {
+    const GatherPattern pattern(test::gather_quality({16, 256, 512}, 32), stream_key(8, k));
+    const double E = gather_point(Illumination(problem, B), p, n, pattern, traced).E[0];
+    sum += E, squares += E * E;
+  }
+  const double estimate = sum / kRepeats;
+  const double std_error = std::sqrt((squares / kRepeats - estimate * estimate) / kRepeats);
+  unsigned long long path_rays = 0;
+  const PathEstimate paths = trace_paths_at_point(light, p, n, 5, 1 << 20, path_rays);
+  EXPECT_NEAR(estimate, paths.E[0], 4 * std::hypot(std_error, paths.std_error[0]));
+  EXPECT_LT(std_error, 0.01 * estimate);
+  EXPECT_LT(paths.std_error[0], 0.005 * estimate);
+}
+
+TEST(MeasuredError, IsNothingForAnExactFieldAndFindsAFieldThatIsFivePerCentTooBright) {
+  test::RoomWithBlocks furnace = test::room_of_2160_patches();
+  furnace.exitance = 3;
+  const PatchSet patches = furnace.build();
+  const RayScene rays(patches);
+  const Lights none;
+  const Problem problem{patches, rays, none};
+  VertexLightmap lightmap;  // three points a patch are as good as any
+  for (std::size_t i = 0; i < patches.patch_count(); ++i)
+    lightmap.corners.push_back({static_cast<std::uint32_t>(3 * i), static_cast<std::uint32_t>(3 * i + 1),
+                                static_cast<std::uint32_t>(3 * i + 2)});
+  lightmap.E = Field(3 * patches.patch_count(), 1);
+  for (const double factor : {1.0, 1.05}) {
+    for (double& E : lightmap.E.value) E = 6 * factor;
+    const MeasuredError error = measure_error(problem, lightmap, effort(Accuracy::standard).error, 5'000'000, 1);
+    EXPECT_GE(error.samples, 256u);
+    EXPECT_NEAR(error.rms_relative, factor - 1, std::max(error.confidence, 0.005)) << factor;
+    EXPECT_LT(error.confidence, 0.02);
+  }
+}
+
+TEST(BuriedPoints, AreThoseThatOnlySeeSidesWithoutLight) {
+  // Inside a block of the room only backs are seen, which take no part.
+  const PatchSet patches = test::room_of_2160_patches().build();
+  const RayScene rays(patches);
+  const Lights none;
+  const Problem problem{patches, rays, none};
+  const std::vector<SensorPoint> points{{{0.2, 0.2, 0.8}, {0, 0, 1}}, {{1.5, 1.8, 1.0}, {0, 0, 1}}};
+  EXPECT_EQ(buried_points(problem, points), std::vector<std::size_t>{1});
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -9,7 +9,7 @@
 
 #include "io/text.h"
 #include "solver/evaluate/sensor_summary.h"
-#include "solver/lights/point_lights.h"
+#include "solver/lights/luminaire.h"
 #include "solver/methods/form_factor_matrix.h"
 #include "solver/model/units.h"
 #include "solver/run/memory_estimate.h"
@@ -27,7 +27,7 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   if (s.patches.channels == 1) out.push_back("colour: everything is grey, one channel is solved");
   if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
   if (scene.lights.sky && s.openings == 0) out.push_back("openings: the sky looks into no room");
-  if (scene.lights.lamp_count() == 0) out.push_back("luminaires: the scene has none");
+  if (scene.lights.luminaires.empty()) out.push_back("luminaires: the scene has none");
   const auto none_is = [&](MaterialKind kind) {
     return std::ranges::none_of(s.patches.materials, [&](const Material& m) { return m.kind == kind; });
   };
@@ -70,13 +70,13 @@ std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
 
 }  // namespace
 
-std::optional<double> daylight_reference(const Lights& lights) {
+std::optional<double> daylight_reference(const LightSpec& lights) {
   if (!lights.sky || !lights.suns.empty()) return {};
   const double reference = photometric(lights.sky->horizontal_irradiance);
   return reference > 0 ? std::optional(reference) : std::nullopt;
 }
 
-std::vector<RunReport::Luminaires> luminaires_by_file(const Lights& lights) {
+std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights) {
   std::vector<RunReport::Luminaires> rows;
   std::map<std::tuple<std::string, const PhotometricWeb*, std::string>, std::size_t> row_of;
   const auto add = [&](const char* type, const PhotometricWeb* web, const std::string& group, const Spectrum& power) {
@@ -95,9 +95,11 @@ std::vector<RunReport::Luminaires> luminaires_by_file(const Lights& lights) {
     ++rows[at->second].count;
     rows[at->second].luminous_flux += photometric(power);
   };
-  for (const auto& lamp : lights.points) add("point", nullptr, lamp.group, power(lamp));
-  for (const auto& lamp : lights.spots) add("spot", nullptr, {}, power(lamp));
-  for (const auto& lamp : lights.webs) add("file", lamp.web.get(), lamp.group, power(lamp));
+  constexpr const char* kTypes[] = {"point", "spot", "file"};  // in the order of Luminaire::kind
+  for (const Luminaire& lamp : lights.luminaires) {
+    const auto* file = std::get_if<WebLuminaire>(&lamp.kind);
+    add(kTypes[lamp.kind.index()], file ? file->web.get() : nullptr, lamp.group, power(lamp));
+  }
   return rows;
 }
 

@@ -12,10 +12,10 @@ namespace clerestory {
 void fill_report(RunReport& report, const Scene& scene, const Solved& solved);
 
 /// Illuminance on open ground [lx], when daylight factors have a meaning: a sky and no sun.
-std::optional<double> daylight_reference(const Lights& lights);
+std::optional<double> daylight_reference(const LightSpec& lights);
 
 /// Luminaires by type, photometric file and group, in the order in which they first appear.
-std::vector<RunReport::Luminaires> luminaires_by_file(const Lights& lights);
+std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights);
 
 /// A table of the sets, one line each below its header; [lx].
 std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors);

@@ -9,6 +9,7 @@
 
 #include "meshing/build_patches.h"
 #include "meshing/make_lightmap.h"
+#include "solver/illumination/place_lights.h"
 #include "solver/model/error.h"
 #include "solver/run/memory_estimate.h"
 
@@ -30,11 +31,11 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
   lap.add_to(seconds.mesh);
   if (monitor.is_interrupted()) return {};
 
-  Lights lights = scene.lights;
+  LightSpec lights = scene.lights;
   if (patches.channels == 1) make_grey(patches.materials), make_grey(lights);
   RayScene rays(patches);
   Prepared p{std::move(patches), meshed.report, std::move(rays), {}, {}};
-  p.lights = local_lights(lights, p.patches, p.rays);
+  p.lights = place_lights(lights, p.patches, p.rays);
   p.lit_sides = has_light(scene) ? find_lit_sides(p.problem(), settings.solve.seed, monitor) : all_sides(p.patches);
   make_patches(p.patches, p.lit_sides.wanted);
   lap.add_to(seconds.build);

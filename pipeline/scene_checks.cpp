@@ -8,6 +8,7 @@
 
 #include "io/scene_file/nearest_name.h"
 #include "solver/gather/gather.h"
+#include "solver/lights/luminaire.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -58,13 +59,10 @@ std::string why_unused(const std::string& pattern, const Scene& scene) {
 }  // namespace
 
 bool has_light(const Scene& scene) {
-  const Lights& lights = scene.lights;
+  const LightSpec& lights = scene.lights;
   const auto shines = [](const Spectrum& s) { return s.max() > 0; };
-  if (std::any_of(lights.points.begin(), lights.points.end(), [&](const auto& l) { return shines(l.power); }) ||
-      std::any_of(lights.spots.begin(), lights.spots.end(), [&](const auto& l) { return shines(l.intensity); }) ||
-      std::any_of(lights.webs.begin(), lights.webs.end(),
-                  [&](const auto& l) { return shines(l.scale * l.web->flux); }) ||
-      std::any_of(lights.suns.begin(), lights.suns.end(), [&](const auto& l) { return shines(l.normal_irradiance); }) ||
+  if (std::ranges::any_of(lights.luminaires, [&](const Luminaire& l) { return shines(power(l)); }) ||
+      std::ranges::any_of(lights.suns, [&](const Sun& sun) { return shines(sun.normal_irradiance); }) ||
       (lights.sky && shines(lights.sky->horizontal_irradiance)))
     return true;
   const auto& used = scene.polygons.material;
@@ -86,9 +84,8 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
 }
 
 void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Observer& observer) {
-  for_each_lamp(problem.lights, [&](const auto& lamp, std::size_t) {
-    warn_about_luminaire(problem, lamp.name, lamp.position, observer);
-  });
+  for (const PlacedLuminaire& lamp : problem.lights.luminaires)
+    if (lamp.mirror == kNoMirror) warn_about_luminaire(problem, lamp.name, lamp.position, observer);
   const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
   if (!buried.empty())
     observer.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +

@@ -10,6 +10,7 @@
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
 #include "apps/settings.h"
+#include "solver/lights/luminaire.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -68,14 +69,13 @@ std::string describe(SkyModel model) {
 }
 
 void say_lights(const Scene& scene, Console& console) {
-  const Lights& l = scene.lights;
-  for (const auto& p : l.points)
-    console.say("  light    point luminaire '" + p.name + "', " + rounded(photometric(p.power)) + " lm");
-  for (const auto& s : l.spots)
-    console.say("  light    spot '" + s.name + "', " + rounded(photometric(s.intensity)) + " cd");
-  for (const auto& w : l.webs)
-    console.say("  light    luminaire '" + w.name + "' of " + w.web->name + ", " +
-                rounded(photometric(w.scale) * w.web->flux) + " lm");
+  const LightSpec& l = scene.lights;
+  for (const Luminaire& lamp : l.luminaires) {
+    constexpr const char* kTypes[] = {"point luminaire", "spot", "luminaire"};  // in the order of Luminaire::kind
+    const auto* file = std::get_if<WebLuminaire>(&lamp.kind);
+    console.say("  light    " + std::string(kTypes[lamp.kind.index()]) + " '" + lamp.name + "'" +
+                (file ? " of " + file->web->name : "") + ", " + rounded(photometric(power(lamp))) + " lm");
+  }
   if (l.sky)
     console.say("  light    " + describe(l.sky->model) + " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +
                 " lx on open ground, " +

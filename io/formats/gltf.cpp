@@ -291,7 +291,7 @@ class GltfReader {
     if (type != "point" && !(length(aim) > 0 && std::isfinite(length(aim))))
       file_.refuse(where + ": its light has no direction");
     if (type == "point") {
-      model_.lights.points.push_back({name, place.b, intensity * (4 * std::numbers::pi), {}});
+      model_.lights.luminaires.push_back({name, place.b, {}, PointLuminaire{intensity * (4 * std::numbers::pi)}});
     } else if (type == "spot") {
       const auto cone = light.find("spot");
       static const Json kEmpty = Json::object();
@@ -302,7 +302,7 @@ class GltfReader {
         file_.refuse(
             text(of_light, ": cone angles ", inner, " and ", outer, " are outside 0 <= inner < outer <= pi/2"));
       }
-      model_.lights.spots.push_back({name, place.b, normalized(aim), intensity, inner, outer});
+      model_.lights.luminaires.push_back({name, place.b, {}, SpotLuminaire{normalized(aim), intensity, inner, outer}});
     } else if (type == "directional") {
       model_.lights.suns.push_back({-normalized(aim), intensity});
     } else {
@@ -325,10 +325,10 @@ class GltfReader {
     const Vec3 back = normalized(place.direction({0, 0, 1})), side = place.direction({1, 0, 0});
     const Vec3 x = normalized(side - back * dot(side, back));
     if (!(length(back) > 0 && length(x) > 0)) file_.refuse(where + ": its light has no direction");
-    WebLuminaire lamp{text_member(file_, node, "name", where), web, place.b, {x, cross(back, x), back}, {}, {}};
+    WebLuminaire lamp{web, {x, cross(back, x), back}, {}};
     if (web->type == WebType::A) lamp.axes = {-back, lamp.axes.y, x};  // the beam is x then, and V goes up to z
     lamp.scale = colour * (multiplier / kWhiteEfficacy);
-    model_.lights.webs.push_back(std::move(lamp));
+    model_.lights.luminaires.push_back({text_member(file_, node, "name", where), place.b, {}, std::move(lamp)});
   }
 
   std::shared_ptr<const PhotometricWeb> light_profile(std::size_t index, const std::string& where) {

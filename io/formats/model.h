@@ -25,7 +25,7 @@ struct Model {
   PolygonSoup polygons;
   std::vector<ModelMaterial> materials;
   std::vector<std::string> surfaces;
-  Lights lights;
+  LightSpec lights;
   std::vector<std::string> warnings;      ///< without the file's name
   std::optional<double> metres_per_unit;  ///< when the file says its unit
   std::optional<Up> up;                   ///< when the file says its axes

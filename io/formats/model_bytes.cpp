@@ -105,20 +105,6 @@ void walk(Walker& walker, Model& model) {
     walker.plain(m.unitless_glow);
   });
   each(walker, model.surfaces, [&](std::string& name) { walker.string(name); });
-  each(walker, model.lights.points, [&](PointLuminaire& light) {
-    walker.string(light.name);
-    walker.plain(light.position);
-    walker.plain(light.power);
-  });
-  each(walker, model.lights.spots, [&](SpotLuminaire& light) {
-    walker.string(light.name);
-    walker.plain(light.position);
-    walker.plain(light.direction);
-    walker.plain(light.intensity);
-    walker.plain(light.inner_angle);
-    walker.plain(light.outer_angle);
-  });
-  walker.array(model.lights.suns);
   each(walker, model.warnings, [&](std::string& warning) { walker.string(warning); });
   maybe(walker, model.metres_per_unit);
   maybe(walker, model.up);

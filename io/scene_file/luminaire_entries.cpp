@@ -23,7 +23,7 @@ class LuminaireReader {
   LuminaireReader(const std::filesystem::path& folder, ChannelCount& channels, std::vector<std::string>& warnings)
       : folder_(folder), channels_(channels), warnings_(warnings) {}
 
-  void read(const JsonObject& object, std::size_t number, Lights& lights) {
+  void read(const JsonObject& object, std::size_t number, LightSpec& lights) {
     std::string name = object.word("name").value_or("");
     if (name.empty()) name = text("luminaire ", number);
     const std::string group = object.word("group").value_or("");
@@ -37,9 +37,9 @@ class LuminaireReader {
                               ": has a file, which says where its light goes, and \"type\": \"point\"; ",
                               "keep one of them"));
       }
-      lights.webs.push_back(read_web(object, std::move(name), position, group));
+      lights.luminaires.push_back({std::move(name), position, group, read_web(object)});
     } else if (is_point) {
-      lights.points.push_back({std::move(name), position, read_point_power(object), group});
+      lights.luminaires.push_back({std::move(name), position, group, PointLuminaire{read_point_power(object)}});
     } else {
       throw InputError(text(object.where(), " says neither \"file\", the name of an .ies or .ldt file, nor \"type\": ",
                             "\"point\"; a luminaire needs one of them"));
@@ -79,11 +79,8 @@ class LuminaireReader {
     return *power * read_dimming(object);
   }
 
-  WebLuminaire read_web(const JsonObject& object, std::string name, const Vec3& position, const std::string& group) {
+  WebLuminaire read_web(const JsonObject& object) {
     WebLuminaire lamp;
-    lamp.name = std::move(name);
-    lamp.group = group;
-    lamp.position = position;
     lamp.web = web_of(object);
     const PhotometricWeb& web = *lamp.web;
     const Vec3 upright = beam_axis(web.type);
@@ -126,7 +123,7 @@ class LuminaireReader {
 }  // namespace
 
 void read_luminaire_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                            ChannelCount& channels, Lights& lights, std::vector<std::string>& warnings) {
+                            ChannelCount& channels, LightSpec& lights, std::vector<std::string>& warnings) {
   if (!root.has("luminaires")) return;
   const Json& entries = as_array(root.at("luminaires"), root.place("luminaires"), "luminaires");
   if (entries.size() > kMostLuminaires)

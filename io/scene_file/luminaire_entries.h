@@ -16,6 +16,6 @@ namespace clerestory {
 /// folder  of the scene file; the names of photometric files are relative to it.
 /// throws  InputError.
 void read_luminaire_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                            ChannelCount& channels, Lights& lights, std::vector<std::string>& warnings);
+                            ChannelCount& channels, LightSpec& lights, std::vector<std::string>& warnings);
 
 }  // namespace clerestory

@@ -86,24 +86,21 @@ Vec3 light_position(const Vec3& p, const std::string& light, const std::string& 
   return p;
 }
 
-void add_lights(Scene& scene, const Lights& lights, const Affine& place, const std::string& file) {
-  for (PointLuminaire point : lights.points) {
-    point.position = light_position(place.point(point.position), point.name, file);
-    scene.lights.points.push_back(std::move(point));
-  }
-  for (SpotLuminaire spot : lights.spots) {
-    spot.position = light_position(place.point(spot.position), spot.name, file);
-    spot.direction = normalized(place.direction(spot.direction));
-    scene.lights.spots.push_back(std::move(spot));
-  }
-  for (WebLuminaire lamp : lights.webs) {
+void turn(PointLuminaire&, const Affine&) {}
+void turn(SpotLuminaire& lamp, const Affine& place) { lamp.direction = normalized(place.direction(lamp.direction)); }
+void turn(WebLuminaire& lamp, const Affine& place) {
+  // A mirrored transform does not mirror the lamp: its third axis follows from the others.
+  lamp.axes.z = normalized(place.direction(lamp.axes.z));
+  const Vec3 x = place.direction(lamp.axes.x);
+  lamp.axes.x = normalized(x - lamp.axes.z * dot(x, lamp.axes.z));
+  lamp.axes.y = cross(lamp.axes.z, lamp.axes.x);
+}
+
+void add_lights(Scene& scene, const LightSpec& lights, const Affine& place, const std::string& file) {
+  for (Luminaire lamp : lights.luminaires) {
     lamp.position = light_position(place.point(lamp.position), lamp.name, file);
-    // A mirrored transform does not mirror the lamp: its third axis follows from the others.
-    lamp.axes.z = normalized(place.direction(lamp.axes.z));
-    const Vec3 x = place.direction(lamp.axes.x);
-    lamp.axes.x = normalized(x - lamp.axes.z * dot(x, lamp.axes.z));
-    lamp.axes.y = cross(lamp.axes.z, lamp.axes.x);
-    scene.lights.webs.push_back(std::move(lamp));
+    std::visit([&](auto& kind) { turn(kind, place); }, lamp.kind);
+    scene.lights.luminaires.push_back(std::move(lamp));
   }
   for (Sun sun : lights.suns) {
     sun.direction = normalized(place.direction(sun.direction));

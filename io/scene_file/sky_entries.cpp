@@ -327,7 +327,7 @@ void set_general_type(int type, Sky& sky) {
 
 /// A sun that has set gives no light: the ground is in its way.
 void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& direction, bool computed,
-             const std::string& file_name, Lights& lights, std::vector<std::string>& warnings) {
+             const std::string& file_name, LightSpec& lights, std::vector<std::string>& warnings) {
   if (direction.z <= 0 && computed) {
     warnings.push_back(text(file_name, ": at this place and time the sun stands ",
                             -std::asin(direction.z) * 180 / std::numbers::pi,
@@ -344,7 +344,7 @@ void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& 
 }  // namespace
 
 std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::string& file_name,
-                                         const std::filesystem::path& folder, ChannelCount& channels, Lights& lights,
+                                         const std::filesystem::path& folder, ChannelCount& channels, LightSpec& lights,
                                          std::vector<std::string>& warnings) {
   SkyEntries entries = read_entries(root, file_name, channels);
   PlaceAndTime& at = entries.where_and_when;

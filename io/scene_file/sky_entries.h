@@ -17,7 +17,7 @@ namespace clerestory {
 /// returns the sun and the hour that they go by, when they go by a sun.
 /// throws  InputError; also for a sky that needs the sun in a scene that does not say where it stands.
 std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::string& file_name,
-                                         const std::filesystem::path& folder, ChannelCount& channels, Lights& lights,
+                                         const std::filesystem::path& folder, ChannelCount& channels, LightSpec& lights,
                                          std::vector<std::string>& warnings);
 
 /// The sky of --sky NAME[:LUX]; 10,000 lx unless it says otherwise. Skies that need no sun: uniform, cie-overcast, and

@@ -4,7 +4,7 @@
 #include <bit>
 #include <numbers>
 
-#include "solver/lights/point_lights.h"
+#include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -39,14 +39,13 @@ class PatchSampler {
   const Vec3& normal() const { return normal_; }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
   /// Whether any of the lamp may be in front of any of the patch.
-  bool faces(const auto& lamp) const {
+  bool faces(const Luminaire& lamp) const {
     return std::any_of(corners_.begin(), corners_.end(),
                        [&](const Vec3& c) { return dot(normal_, lamp.position - c) > -reach(lamp); });
   }
 
   /// What the lamp can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
-  template <class Lamp>
-  double estimate(const Lamp& lamp) const {
+  double estimate(const Luminaire& lamp) const {
     if (!faces(lamp)) return 0;
     const Vec3 middle = centre();
     double sum = 0, size2 = 0;
@@ -134,8 +133,7 @@ class PatchSampler {
   const DirectOptions& options_;
 };
 
-template <class Lamp>
-Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
+Spectrum from_lamp(const PatchSampler& patch, const PlacedLuminaire& lamp) {
   if (!patch.faces(lamp)) return Spectrum(0.0);
   return patch.mean(
       lamp.mirror, [&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
@@ -148,10 +146,9 @@ Spectrum from_lamp(const PatchSampler& patch, const Lamp& lamp) {
 Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
   constexpr std::size_t kFew = 4;    // lamps that need no choice
   constexpr double kMuch = 1.0 / 6;  // of what all can give
-  const std::size_t count = lights.lamp_count();
   Spectrum E(0.0);
-  if (count <= kFew) {
-    for_each_lamp(lights, [&](const auto& lamp, std::size_t) { E += from_lamp(patch, lamp); });
+  if (lights.luminaires.size() <= kFew) {
+    for (const PlacedLuminaire& lamp : lights.luminaires) E += from_lamp(patch, lamp);
     return E;
   }
   struct Over {
@@ -162,17 +159,18 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
   thread_local std::vector<Over> over;
   over.clear();
   double all = 0;
-  for_each_lamp(lights, [&](const auto& lamp, std::size_t number) {
+  for (std::uint32_t number = 0; number < lights.luminaires.size(); ++number) {
+    const Luminaire& lamp = lights.luminaires[number];
     const double gives = patch.estimate(lamp);
-    if (gives > 0) over.push_back({static_cast<std::uint32_t>(number), gives, opening_rays(lamp, patch.centre()) > 4});
+    if (gives > 0) over.push_back({number, gives, opening_rays(lamp, patch.centre()) > 4});
     all += gives;
-  });
+  }
   bool wide = false;
   double shared = 0;  // becomes the running sum over lamps that share rays
   std::size_t kept = 0;
   for (const Over& lamp : over) {
     if (lamp.gives > kMuch * all) {
-      with_lamp(lights, lamp.number, [&](const auto& l) { E += from_lamp(patch, l); });
+      E += from_lamp(patch, lights.luminaires[lamp.number]);
     } else {
       shared += lamp.gives;
       wide = wide || lamp.wide;
@@ -190,15 +188,14 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
                  [&](const Vec3& p, double u, double v, const auto& pick) {
                    const std::size_t k = chosen(pick());
                    const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
-                   return with_lamp(lights, over[k].number, [&](const auto& lamp) {
-                     const Vec3 q = light_point(lamp, p, u, v);
-                     return Shown{q, open_irradiance(lamp, q, p, patch.normal()) / probability, lamp.mirror};
-                   });
+                   const PlacedLuminaire& lamp = lights.luminaires[over[k].number];
+                   const Vec3 q = light_point(lamp, p, u, v);
+                   return Shown{q, open_irradiance(lamp, q, p, patch.normal()) / probability, lamp.mirror};
                  },
                  wide);
 }
 
-Spectrum from_sun(const PatchSampler& patch, const Sun& sun, double far_away) {
+Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, double far_away) {
   if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
   return patch.mean(
       sun.mirror,
@@ -273,8 +270,7 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
 }
 
 /// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
-template <class Lamp>
-EnergyBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t rays, std::uint64_t key) {
+EnergyBalance balance(const Problem& problem, const PlacedLuminaire& lamp, std::uint32_t rays, std::uint64_t key) {
   if (lamp.mirror != kNoMirror) return {};  // mirrors turn the lamp's own rays
   double sent = 0, arrived = 0, escaped = 0;
   for (std::uint32_t k = 0; k < rays; ++k) {
@@ -296,15 +292,14 @@ EnergyBalance balance(const Problem& problem, const Lamp& lamp, std::uint32_t ra
 
 /// Many lamps share the rays of four.
 void balance_lamps(const Problem& problem, DirectLight& direct, const DirectOptions& options) {
-  const std::size_t count = problem.lights.lamp_count();
+  const std::size_t count = problem.lights.luminaires.size();
   if (count == 0) return;
   const auto rays = static_cast<std::uint32_t>(std::clamp<std::size_t>((1 << 16) / count, 512, 1 << 14));
   std::vector<EnergyBalance> balances(count);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number)
-      balances[number] = with_lamp(problem.lights, number, [&](const auto& lamp) {
-        return balance(problem, lamp, rays, stream_key(options.seed, kLampRays, number));
-      });
+      balances[number] =
+          balance(problem, problem.lights.luminaires[number], rays, stream_key(options.seed, kLampRays, number));
   });
   for (const EnergyBalance& b : balances) {
     direct.energy.emitted += b.emitted;
@@ -368,7 +363,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     }
     direct.rays += direct.openings.number.size() * static_cast<std::size_t>(kRaysOfOpening);
   }
-  direct.rays += n * static_cast<std::size_t>(options.lamp_rays) * (lights.lamp_count() + lights.suns.size());
+  direct.rays += n * static_cast<std::size_t>(options.lamp_rays) * (lights.luminaires.size() + lights.suns.size());
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
   balance_lamps(problem, direct, options);
   return direct;

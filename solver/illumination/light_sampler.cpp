@@ -5,7 +5,7 @@
 #include <bit>
 #include <numbers>
 
-#include "solver/lights/point_lights.h"
+#include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
@@ -48,24 +48,6 @@ LightBounds bounds_of_patch(const PatchSet& patches, PatchId q, double flux) {
           flux};
 }
 
-LightBounds bounds_of(const PointLuminaire& lamp) {
-  return {lamp.position, lamp.position, {}, std::numbers::pi, luminous_mean(intensity(lamp, {}))};
-}
-LightBounds bounds_of(const SpotLuminaire& lamp) {
-  return {lamp.position, lamp.position, lamp.direction, lamp.outer_angle, luminous_mean(lamp.intensity)};
-}
-LightBounds bounds_of(const WebLuminaire& lamp) {
-  const auto& [x, y, z] = lamp.axes;
-  const Vec3 half = lamp.web->opening.size / 2;
-  const auto along = [&](int axis) {
-    return std::abs(x[axis]) * half.x + std::abs(y[axis]) * half.y + std::abs(z[axis]) * half.z;
-  };
-  const Vec3 box{along(0), along(1), along(2)};
-  const double cone = beam_half_angle(*lamp.web);
-  return {lamp.position - box, lamp.position + box, cone < std::numbers::pi ? -z : Vec3{}, cone,
-          luminous_mean(lamp.scale) * peak_candela(*lamp.web)};
-}
-
 /// Circular cross-section of the scene: what a sun lights at most [m2].
 double cross_section(const RayScene& rays) { return std::numbers::pi / 4 * rays.diameter() * rays.diameter(); }
 
@@ -76,7 +58,7 @@ LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_
   const Lights& lights = problem.lights;
   const double extent = problem.rays.diameter();
 
-  std::vector<LightBounds> bounds;
+  std::vector<LightBounds> light_bounds;
   const double bright = kBrighter * area_median(patches, glow);
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {
     const double B = luminous_mean(glow[i]), flux = B * patches.area[i];
@@ -84,17 +66,17 @@ LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_
     if (bright_.empty()) number_of_patch_.assign(patches.patch_count(), LightTree::kNone);
     number_of_patch_[i] = static_cast<std::uint32_t>(bright_.size());
     bright_.push_back(static_cast<std::uint32_t>(i));
-    bounds.push_back(bounds_of_patch(patches, PatchId{i}, flux));
+    light_bounds.push_back(bounds_of_patch(patches, PatchId{i}, flux));
     patches_power_ += flux;
   }
-  patches_ = LightTree(bounds, Falloff::cosine, extent);
+  patches_ = LightTree(light_bounds, Falloff::cosine, extent);
 
-  bounds.clear();
-  for_each_lamp(lights, [&](const auto& lamp, std::size_t) {
-    bounds.push_back(bounds_of(lamp));
+  light_bounds.clear();
+  for (const Luminaire& lamp : lights.luminaires) {
+    light_bounds.push_back(bounds(lamp));
     lamps_power_ += luminous_mean(power(lamp));
-  });
-  if (lamps_power_ > 0) lamps_ = LightTree(bounds, Falloff::none, extent);
+  }
+  if (lamps_power_ > 0) lamps_ = LightTree(light_bounds, Falloff::none, extent);
   for (const Sun& sun : lights.suns) suns_power_ += luminous_mean(sun.normal_irradiance) * cross_section(problem.rays);
 }
 
@@ -144,18 +126,17 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
 LightSample LightSampler::on_lamp(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
   const LightTree::Choice choice = lamps_.choose(p, n, pick);
   if (!(choice.probability > 0)) return {};
-  return with_lamp(problem_.lights, choice.light, [&](const auto& lamp) -> LightSample {
-    const Vec3 q = light_point(lamp, p, u, v);
-    const double probability = share * choice.probability;
-    return {short_of(q, p, problem_.rays.lift()), open_irradiance(lamp, q, p, n) / probability, 0, {}, lamp.mirror};
-  });
+  const PlacedLuminaire& lamp = problem_.lights.luminaires[choice.light];
+  const Vec3 q = light_point(lamp, p, u, v);
+  const double probability = share * choice.probability;
+  return {short_of(q, p, problem_.rays.lift()), open_irradiance(lamp, q, p, n) / probability, 0, {}, lamp.mirror};
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
   double left = pick * suns_power_ / cross_section(problem_.rays);
-  const Sun* sun = nullptr;
+  const PlacedSun* sun = nullptr;
   double power = 0;
-  for (const Sun& candidate : problem_.lights.suns) {
+  for (const PlacedSun& candidate : problem_.lights.suns) {
     const double candidate_power = luminous_mean(candidate.normal_irradiance);
     if (!(candidate_power > 0)) continue;
     if (sun) left -= power;
@@ -209,21 +190,20 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
   // In the tree's order lamps that share a packet are neighbours.
   const double lift = rays.lift();
   for (const std::uint32_t number : lamps_.order()) {
-    with_lamp(problem_.lights, number, [&](const auto& lamp) {
-      const int count = opening_rays(lamp, p);
-      if (count == 1) {
-        look(short_of(lamp.position, p, lift), open_irradiance(lamp, p, n), lamp.mirror);
-        return;
-      }
-      for (int k = 0; k < count; ++k) {
-        const OpeningPlace at = opening_place(lamp, k, count);
-        const Vec3 q = light_point(lamp, p, at.u, at.v);
-        look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight, lamp.mirror);
-      }
-    });
+    const PlacedLuminaire& lamp = problem_.lights.luminaires[number];
+    const int count = opening_rays(lamp, p);
+    if (count == 1) {
+      look(short_of(lamp.position, p, lift), open_irradiance(lamp, p, n), lamp.mirror);
+      continue;
+    }
+    for (int k = 0; k < count; ++k) {
+      const OpeningPlace at = opening_place(lamp, k, count);
+      const Vec3 q = light_point(lamp, p, at.u, at.v);
+      look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight, lamp.mirror);
+    }
   }
   flush();
-  for (const Sun& sun : problem_.lights.suns) {
+  for (const PlacedSun& sun : problem_.lights.suns) {
     for (int k = 0; k < sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/illumination/light_sampler.h"
-#include "solver/model/light_spec.h"
+#include "solver/lights/lights.h"
 
 namespace clerestory {
 

@@ -33,7 +33,7 @@ SkyRadiance::SkyRadiance(const Lights& lights) {
       break;
   }
   Spectrum horizontal = sky.horizontal_irradiance;
-  for (const Sun& sun : lights.suns)
+  for (const PlacedSun& sun : lights.suns)
     if (sun.mirror == kNoMirror) horizontal += sun.normal_irradiance * std::max(0.0, sun.direction.z);
   ground_ = horizontal * (sky.ground_reflectance / pi);
 }

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "solver/lights/lights.h"
 #include "solver/lights/sky_shape_table.h"
-#include "solver/model/light_spec.h"
 
 namespace clerestory {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/model/units.h"
 #include "solver/sampling/gauss_legendre.h"
 
 namespace clerestory {
@@ -32,9 +33,9 @@ Vec3 to_lamp_frame(const WebLuminaire& lamp, const Vec3& d) {
   return {dot(d, lamp.axes.x), dot(d, lamp.axes.y), dot(d, lamp.axes.z)};
 }
 
-bool is_near(const WebLuminaire& lamp, const Vec3& p) {
+bool is_near(const WebLuminaire& lamp, const Vec3& position, const Vec3& p) {
   const double near = kNear * largest_length(lamp.web->opening.size);
-  const Vec3 d = p - lamp.position;
+  const Vec3 d = p - position;
   return dot(d, d) < near * near;
 }
 
@@ -46,18 +47,34 @@ Spectrum intensity(const WebLuminaire& lamp, const Vec3& d) {
 
 Spectrum power(const WebLuminaire& lamp) { return lamp.scale * lamp.web->flux; }
 
+LightBounds bounds(const WebLuminaire& lamp, const Vec3& position) {
+  const auto& [x, y, z] = lamp.axes;
+  const Vec3 half = lamp.web->opening.size / 2;
+  const auto along = [&](int axis) {
+    return std::abs(x[axis]) * half.x + std::abs(y[axis]) * half.y + std::abs(z[axis]) * half.z;
+  };
+  const Vec3 box{along(0), along(1), along(2)};
+  const double cone = beam_half_angle(*lamp.web);
+  return {position - box, position + box, cone < std::numbers::pi ? -z : Vec3{}, cone,
+          luminous_mean(lamp.scale) * peak_candela(*lamp.web)};
+}
+
+void turn_into_image(WebLuminaire& lamp, const MirrorPlane& mirror) {
+  for (Vec3* axis : {&lamp.axes.x, &lamp.axes.y, &lamp.axes.z}) *axis = mirror.image_of_direction(*axis);
+}
+
 double reach(const WebLuminaire& lamp) {
   const Face f = face(lamp);
   return std::hypot(f.a, f.b) / 2;
 }
 
-int opening_rays(const WebLuminaire& lamp, const Vec3& p) {
-  if (!is_near(lamp, p)) return 1;
-  const Vec3 at = to_lamp_frame(lamp, p - lamp.position), half = lamp.web->opening.size / 2;
+int opening_rays(const WebLuminaire& lamp, const Vec3& position, const Vec3& p) {
+  if (!is_near(lamp, position, p)) return 1;
+  const Vec3 at = to_lamp_frame(lamp, p - position), half = lamp.web->opening.size / 2;
   const auto beside = [](double x, double limit) { return std::max(0.0, std::abs(x) - limit); };
   const double gap = length({beside(at.x, half.x), beside(at.y, half.y), beside(at.z, half.z)});
   const double size = largest_length(lamp.web->opening.size);
-  const Vec3 d = p - lamp.position;
+  const Vec3 d = p - position;
   if (dot(d, d) >= 25 * size * size) return 4;
   return gap >= size ? 16 : gap >= size / 2 ? 64 : 256;
 }
@@ -92,15 +109,15 @@ OpeningPlace opening_place(const WebLuminaire& lamp, int k, int count) {
   }
 }
 
-Vec3 light_point(const WebLuminaire& lamp, const Vec3& p, double u, double v) {
-  if (!is_near(lamp, p)) return lamp.position;
+Vec3 light_point(const WebLuminaire& lamp, const Vec3& position, const Vec3& p, double u, double v) {
+  if (!is_near(lamp, position, p)) return position;
   const Face f = face(lamp);
   double a = u - 0.5, b = v - 0.5;
   if (f.round) {
     const double r = std::sqrt(u) / 2, phi = 2 * std::numbers::pi * v;
     a = r * std::cos(phi), b = r * std::sin(phi);
   }
-  return lamp.position + f.along_a * (f.a * a) + f.along_b * (f.b * b);
+  return position + f.along_a * (f.a * a) + f.along_b * (f.b * b);
 }
 
 double least_r2(const WebLuminaire& lamp) {

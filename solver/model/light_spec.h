@@ -1,11 +1,10 @@
 #pragma once
 // Light that does not come from surfaces of the model.
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "solver/model/channels.h"
@@ -16,37 +15,43 @@
 
 namespace clerestory {
 
-inline constexpr std::uint32_t kNoMirror = 0xffffffff;
+// Kinds of luminaires: their data. What each gives, and in which directions, is in a file of its own in solver/lights/.
+// colour() is what all of a luminaire's light is in proportion to.
 
-/// Point source of equal intensity in all directions.
+/// Equal intensity in all directions.
 struct PointLuminaire {
-  std::string name;
-  Vec3 position;                     ///< [m]
-  Spectrum power;                    ///< total flux [W]
-  std::string group{};               ///< luminaires that are switched and dimmed together; may be empty
-  std::uint32_t mirror = kNoMirror;  ///< of an image: the mirror (RayScene::mirrors) that shows it
+  Spectrum power;  ///< total flux [W]
+
+  Spectrum& colour() { return power; }
+  const Spectrum& colour() const { return power; }
 };
 
 /// glTF KHR_lights_punctual spot: intensity falls smoothly from the inner to the outer half-angle.
 struct SpotLuminaire {
-  std::string name;
-  Vec3 position;                            ///< [m]
   Vec3 direction;                           ///< unit, away from the lamp
   Spectrum intensity;                       ///< on the axis [W/sr]
   double inner_angle = 0, outer_angle = 0;  ///< half-angles [rad]
-  std::uint32_t mirror = kNoMirror;         ///< as of PointLuminaire
+
+  Spectrum& colour() { return intensity; }
+  const Spectrum& colour() const { return intensity; }
 };
 
 /// Luminaire of a photometric file. Nearer than ten times its opening's largest length its light comes from the whole
 /// opening, farther away from the centre.
 struct WebLuminaire {
-  std::string name;
   std::shared_ptr<const PhotometricWeb> web;  ///< many luminaires share one
-  Vec3 position;                              ///< of the photometric centre [m]
   LuminaireAxes axes;
-  Spectrum scale;                    ///< radiant intensity for each candela of the web, dimming included [W/sr / cd]
-  std::string group{};               ///< as of PointLuminaire
-  std::uint32_t mirror = kNoMirror;  ///< as of PointLuminaire
+  Spectrum scale;  ///< radiant intensity for each candela of the web, dimming included [W/sr / cd]
+
+  Spectrum& colour() { return scale; }
+  const Spectrum& colour() const { return scale; }
+};
+
+struct Luminaire {
+  std::string name;
+  Vec3 position;      ///< of a photometric file's centre [m]
+  std::string group;  ///< luminaires that are switched and dimmed together; may be empty
+  std::variant<PointLuminaire, SpotLuminaire, WebLuminaire> kind;
 };
 
 enum class SkyModel { uniform, cie_overcast, cie_clear, cie_general, perez, image };
@@ -64,49 +69,17 @@ struct Sky {
 
 /// Sun: a disc of 0.533 degrees of uniform radiance.
 struct Sun {
-  Vec3 direction;                    ///< unit, to the sun
-  Spectrum normal_irradiance;        ///< on a plane that faces the sun [W/m2]
-  std::uint32_t mirror = kNoMirror;  ///< as of PointLuminaire
+  Vec3 direction;              ///< unit, to the sun
+  Spectrum normal_irradiance;  ///< on a plane that faces the sun [W/m2]
 };
 
-/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room,
-/// or bright patches that lie together. Only a hint where to look: what it misses is found as well.
-struct LightArea {
-  std::vector<Vec3> corners;                   ///< counter-clockwise around the normal, local frame [m]
-  std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, wound alike [m]
-  Vec3 centre, normal;                         ///< normal: unit, to where the light goes
-  double radius = 0, area = 0;                 ///< radius: farthest point from the centre [m], area [m2]
-  double brightness = 0;                       ///< mean radiance that comes out of it [W/(m2 sr)]
-};
-
-struct Lights {
-  std::vector<PointLuminaire> points;
-  std::vector<SpotLuminaire> spots;
-  std::vector<WebLuminaire> webs;
+/// Light as a scene has it: what is computed of it is in solver/lights/lights.h.
+struct LightSpec {
+  std::vector<Luminaire> luminaires;
   std::optional<Sky> sky;
-  std::vector<Sun> suns;            ///< the scene's sun, and directional lights of a glTF file
-  std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
+  std::vector<Sun> suns;  ///< the scene's sun, and directional lights of a glTF file
 
-  std::size_t lamp_count() const { return points.size() + spots.size() + webs.size(); }
-  bool empty() const { return lamp_count() == 0 && !sky && suns.empty(); }
+  bool empty() const { return luminaires.empty() && !sky && suns.empty(); }
 };
-
-/// Calls visit(lamp, number) for the luminaires of all kinds, which number them through: points, spots, webs.
-template <class AnyLights, class Visit>
-void for_each_lamp(AnyLights& lights, const Visit& visit) {
-  std::size_t number = 0;
-  for (auto& lamp : lights.points) visit(lamp, number++);
-  for (auto& lamp : lights.spots) visit(lamp, number++);
-  for (auto& lamp : lights.webs) visit(lamp, number++);
-}
-
-/// visit(lamp) for the luminaire of that number.
-template <class Visit>
-auto with_lamp(const Lights& lights, std::size_t number, const Visit& visit) {
-  if (number < lights.points.size()) return visit(lights.points[number]);
-  number -= lights.points.size();
-  if (number < lights.spots.size()) return visit(lights.spots[number]);
-  return visit(lights.webs[number - lights.spots.size()]);
-}
 
 }  // namespace clerestory

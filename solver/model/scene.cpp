@@ -17,9 +17,7 @@ void for_each_colour_of_materials(Materials& materials, const Visit& visit) {
 }
 template <class AnyLights, class Visit>
 void for_each_colour_of_lights(AnyLights& lights, const Visit& visit) {
-  for (auto& l : lights.points) visit(l.power);
-  for (auto& l : lights.spots) visit(l.intensity);
-  for (auto& l : lights.webs) visit(l.scale);
+  for (auto& l : lights.luminaires) std::visit([&](auto& kind) { visit(kind.colour()); }, l.kind);
   for (auto& s : lights.suns) visit(s.normal_irradiance);
   if (lights.sky) visit(lights.sky->horizontal_irradiance);
 }
@@ -39,7 +37,7 @@ int Scene::channels() const {
 
 void make_grey(std::vector<Material>& materials) { for_each_colour_of_materials(materials, kToGrey); }
 
-void make_grey(Lights& lights) {
+void make_grey(LightSpec& lights) {
   for_each_colour_of_lights(lights, kToGrey);
   if (!lights.sky || !lights.sky->image) return;
   SkyImage image = *lights.sky->image;

@@ -62,7 +62,7 @@ struct Scene {
   PolygonSoup polygons;
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< names, by SurfaceId
-  Lights lights;
+  LightSpec lights;
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
   std::vector<SensorSet> sensors;
   SolverSettings settings;
@@ -75,6 +75,6 @@ struct Scene {
 
 /// Every colour replaced by its luminous mean.
 void make_grey(std::vector<Material>& materials);
-void make_grey(Lights& lights);
+void make_grey(LightSpec& lights);
 
 }  // namespace clerestory

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "solver/lights/light_tree.h"
-#include "solver/model/light_spec.h"
+#include "solver/lights/lights.h"
 
 namespace clerestory {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "solver/model/light_spec.h"
+#include "solver/lights/lights.h"
 #include "solver/model/patch_set.h"
 #include "solver/visibility/ray_scene.h"
 

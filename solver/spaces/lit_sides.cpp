@@ -5,7 +5,7 @@
 
 #include "solver/illumination/light_sampler.h"
 #include "solver/illumination/panels.h"
-#include "solver/lights/point_lights.h"
+#include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
@@ -84,7 +84,7 @@ Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, in
     seen.patches.push_back(hit.patch);
     if (spaces.is_settled(hit.patch)) return seen;
   }
-  for (const Sun& sun : problem.lights.suns) {
+  for (const PlacedSun& sun : problem.lights.suns) {
     if (sun.mirror != kNoMirror) continue;  // the space is told by rays that mirrors turn
     for (int k = 0; k < 16 && !seen.sun; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
@@ -115,8 +115,8 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
     points[k] = point_on_triangle(corners, u[0], u[1]) + n * lift;
   }
   Found found;
-  const auto look_at = [&](const auto& lamp) {
-    if (lamp.mirror != kNoMirror) return;
+  for (const PlacedLuminaire& lamp : problem.lights.luminaires) {
+    if (lamp.mirror != kNoMirror) continue;
     SegmentPacket segments;
     unsigned facing = 0;
     for (int lane = 0; lane < 16; ++lane) {
@@ -127,8 +127,7 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
       if (!open_irradiance(lamp, q, p, n).is_black()) facing |= 1u << lane;
     }
     if (facing && problem.rays.visible16(segments, static_cast<std::uint16_t>(facing))) found.lit = true;
-  };
-  for_each_lamp(problem.lights, [&](const auto& lamp, std::size_t) { look_at(lamp); });
+  }
   for (std::uint32_t k = 0; k < samples && emitters.has_emitters(); ++k) {
     const auto u = sobol4(k, key);
     const LightSample s = emitters.sample(points[k], n, (k + u[2]) / static_cast<double>(samples), u[3], u[0], true);
@@ -139,22 +138,22 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
 
 /// Sides that rays of the luminaires meet. Many lamps share the rays of sixteen: they stand in the same rooms.
 void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
-  const std::size_t count = problem.lights.lamp_count();
+  const std::vector<PlacedLuminaire>& lamps = problem.lights.luminaires;
+  const std::size_t count = lamps.size();
   if (count == 0) return;
   const std::size_t rays_each = std::clamp<std::size_t>((1 << 16) / count, 256, 4096);
   std::vector<PatchId> met(count * rays_each);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number) {
-      const Vec3 position = with_lamp(problem.lights, number, [](const auto& lamp) { return lamp.position; });
+      const PlacedLuminaire& lamp = lamps[number];
+      if (lamp.mirror != kNoMirror) continue;
       const std::uint64_t key = stream_key(seed, kLampRays, number);
       for (std::size_t k = 0; k < rays_each; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), key);
         const Vec3 d = sphere_direction(u[0], u[1]);
-        const Vec3 start = position + d * (20 * problem.rays.lift());
-        const bool dark = with_lamp(problem.lights, number, [&](const auto& lamp) {
-          return lamp.mirror != kNoMirror || intensity(lamp, d).is_black();
-        });
-        if (!dark) met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
+        const Vec3 start = lamp.position + d * (20 * problem.rays.lift());
+        if (!intensity(lamp, d).is_black())
+          met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
       }
     }
   });

@@ -41,16 +41,16 @@ TEST(LuminairesByFile, AddUpTheFluxOfEachFileAndGroup) {
   web.declared_flux = 1250;
   web.lamp_flux = 2500;
   const auto shared = std::make_shared<const PhotometricWeb>(web), other = std::make_shared<const PhotometricWeb>(web);
-  Lights lights;
+  LightSpec lights;
   const auto lamp = [&](const auto& of, double dimming, const std::string& group) {
-    lights.webs.push_back({"lamp", of, {}, {}, Spectrum(dimming / kWhiteEfficacy), group});
+    lights.luminaires.push_back({"lamp", {}, group, WebLuminaire{of, {}, Spectrum(dimming / kWhiteEfficacy)}});
   };
+  for (const double flux : {800, 200})
+    lights.luminaires.push_back({"bulb", {}, "a", PointLuminaire{Spectrum(flux / kWhiteEfficacy)}});
   lamp(shared, 1, "a");
   lamp(shared, 0.5, "b");
   lamp(other, 1, "a");  // a file of the same name in another folder
   lamp(shared, 0.5, "a");
-  lights.points.push_back({"bulb", {}, Spectrum(800 / kWhiteEfficacy), "a"});
-  lights.points.push_back({"bulb", {}, Spectrum(200 / kWhiteEfficacy), "a"});
 
   const auto rows = luminaires_by_file(lights);
   ASSERT_EQ(rows.size(), 4u);
@@ -71,7 +71,7 @@ TEST(LuminairesByFile, AddUpTheFluxOfEachFileAndGroup) {
 }
 
 TEST(DaylightReference, IsTheSkyAloneOnOpenGround) {
-  Lights lights;
+  LightSpec lights;
   EXPECT_FALSE(daylight_reference(lights));
   lights.sky = Sky{};
   EXPECT_FALSE(daylight_reference(lights)) << "a black sky is no reference";

@@ -19,6 +19,7 @@
 #include "io/read_scene.h"
 #include "io/read_sensors.h"
 #include "meshing/build_patches.h"
+#include "solver/illumination/place_lights.h"
 #include "solver/lights/sun.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
@@ -174,7 +175,7 @@ int run(const Arguments& arguments) {
   PatchSet& patches = meshed.patches;
   patches.channels = scene.channels();
   const RayScene rays(patches);
-  const Lights lights = local_lights(scene.lights, patches, rays);
+  const Lights lights = place_lights(scene.lights, patches, rays);
   const Problem problem{patches, rays, lights};
   make_patches(patches, find_lit_sides(problem, 1).wanted);
   const Illumination light(problem);

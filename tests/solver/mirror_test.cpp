@@ -7,12 +7,14 @@
 #include "solver/form_factors/point_to_polygon.h"
 #include "solver/gather/gather_point.h"
 #include "solver/illumination/light_sampler.h"
+#include "solver/illumination/place_lights.h"
 #include "solver/methods/hierarchical.h"
 #include "solver/model/error.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/solve.h"
 #include "solver/visibility/glass_sheet.h"
 #include "tests/support/gather_quality.h"
+#include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 #include "tests/support/unjoined_lightmap.h"
 
@@ -54,12 +56,12 @@ TEST(Mirror, ShowsTheImageOfALampWhereTheWayMeetsItAndIsFree) {
   PatchBuilder b(0.0);
   b.rectangle({-4, -4, 3}, {0, 8, 0}, {8, 0, 0});
   b.mirror(kRho).rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
-  Lights lamps;
-  lamps.points = {{"lamp", {0.3, 0.2, 1}, Spectrum(100.0)}};
+  LightSpec lamps;
+  lamps.luminaires = {test::point_lamp({0.3, 0.2, 1}, 100)};
   const auto at = [&](const PatchSet& patches, const Vec3& p) {
     const RayScene rays(patches);
-    const Lights lights = with_mirror_images(lamps, rays);
-    EXPECT_EQ(lights.points.size(), 2u);
+    const Lights lights = place_lights(lamps, patches, rays);
+    EXPECT_EQ(lights.luminaires.size(), 2u);
     const Problem problem{patches, rays, lights};
     return LightSampler(problem, patches.M).small_lights(p, {0, 0, -1}, 1, 1)[0];
   };
@@ -118,9 +120,9 @@ PatchSet mirrored_room() {
 
 Solution solve_by(Method method, const PatchSet& patches, PatchSet& solved_on) {
   const RayScene rays(patches);
-  Lights lamps;
-  lamps.points = {{"lamp", {0.8, 0.7, 1.2}, Spectrum(100.0)}};
-  const Lights lights = with_mirror_images(lamps, rays);
+  LightSpec lamps;
+  lamps.luminaires = {test::point_lamp({0.8, 0.7, 1.2}, 100)};
+  const Lights lights = place_lights(lamps, patches, rays);
   const Problem problem{patches, rays, lights};
   solved_on = patches;
   if (method != Method::hierarchical) return solve_on_patches(problem, {.method = method});

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/io/reading.h"
+#include "tests/support/luminaires.h"
 
 namespace clerestory {
 namespace {
@@ -122,16 +123,16 @@ TEST_F(Gltf, LightsStandWhereTheirNodesAreAndOneLightMayStandTwice) {
            { "type": "point", "intensity": 179, "color": [1, 0.5, 0.25] },
            { "type": "spot", "intensity": 358, "spot": { "innerConeAngle": 0.2, "outerConeAngle": 0.5 } },
            { "type": "directional", "intensity": 1790 } ] } })"));
-  ASSERT_EQ(scene.lights.points.size(), 2u);
-  EXPECT_EQ(scene.lights.points[0].name, "a");
-  EXPECT_EQ(scene.lights.points[0].position, (Vec3{0, 0, 2}));
-  EXPECT_EQ(scene.lights.points[1].position, (Vec3{1, 0, 2}));
-  EXPECT_NEAR(scene.lights.points[0].power[0], 4 * kPi, 1e-12);  // 1 W/sr all around
-  EXPECT_NEAR(scene.lights.points[0].power[2], kPi, 1e-12);
-  ASSERT_EQ(scene.lights.spots.size(), 1u);
-  EXPECT_LT(length(scene.lights.spots[0].direction - Vec3{0, 0, -1}), 1e-15);
-  EXPECT_DOUBLE_EQ(scene.lights.spots[0].intensity[0], 2);
-  EXPECT_EQ(scene.lights.spots[0].outer_angle, 0.5);
+  ASSERT_EQ(scene.lights.luminaires.size(), 3u);
+  const Luminaire &a = scene.lights.luminaires[0], &b = scene.lights.luminaires[1], &spot = scene.lights.luminaires[2];
+  EXPECT_EQ(a.name, "a");
+  EXPECT_EQ(a.position, (Vec3{0, 0, 2}));
+  EXPECT_EQ(b.position, (Vec3{1, 0, 2}));
+  EXPECT_NEAR(test::as_point(a).power[0], 4 * kPi, 1e-12);  // 1 W/sr all around
+  EXPECT_NEAR(test::as_point(a).power[2], kPi, 1e-12);
+  EXPECT_LT(length(test::as_spot(spot).direction - Vec3{0, 0, -1}), 1e-15);
+  EXPECT_DOUBLE_EQ(test::as_spot(spot).intensity[0], 2);
+  EXPECT_EQ(test::as_spot(spot).outer_angle, 0.5);
   ASSERT_EQ(scene.lights.suns.size(), 1u);
   EXPECT_EQ(scene.lights.suns[0].direction, (Vec3{0, -1, 0}));  // it shines along -z of the node: to +y of the scene
   EXPECT_DOUBLE_EQ(scene.lights.suns[0].normal_irradiance[0], 10);
@@ -150,10 +151,10 @@ TEST_F(Gltf, LightProfilesShineAlongTheirNodes) {
            members + " } } }";
   };
   const Scene scene = read(gltf(node(R"("light": 0, "multiplier": 2, "color": [1, 0.5, 0])"), lights));
-  ASSERT_EQ(scene.lights.webs.size(), 1u);
-  const WebLuminaire& lamp = scene.lights.webs[0];
-  EXPECT_EQ(lamp.name, "lamp");
-  EXPECT_LT(length(lamp.position - Vec3{1, -3, 2}), 1e-12);
+  ASSERT_EQ(scene.lights.luminaires.size(), 1u);
+  const WebLuminaire& lamp = test::as_web(scene.lights.luminaires[0]);
+  EXPECT_EQ(scene.lights.luminaires[0].name, "lamp");
+  EXPECT_LT(length(scene.lights.luminaires[0].position - Vec3{1, -3, 2}), 1e-12);
   // The node's -z points down, its x stays.
   EXPECT_LT(length(lamp.axes.z - Vec3{0, 0, 1}), 1e-12);
   EXPECT_LT(length(lamp.axes.x - Vec3{1, 0, 0}), 1e-12);

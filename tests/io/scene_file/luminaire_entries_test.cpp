@@ -2,6 +2,7 @@
 
 #include "solver/model/units.h"
 #include "tests/io/reading.h"
+#include "tests/support/luminaires.h"
 
 namespace clerestory {
 namespace {
@@ -29,22 +30,22 @@ class Luminaires : public ::testing::Test {
 TEST_F(Luminaires, AreReadFromTheirFileWhichManyShare) {
   const Scene s = read(R"({ "file": "lamp.ies", "position": [1, 2, 3], "group": "row", "dimming": 0.5 },
       { "file": "./lamp.ies", "position": [2, 2, 3], "aim": [0, 3, 0], "rotation": 0, "name": "up" })");
-  ASSERT_EQ(s.lights.webs.size(), 2u);
-  EXPECT_EQ(s.lights.webs[0].web, s.lights.webs[1].web);
-  EXPECT_EQ(s.lights.webs[0].position, (Vec3{1, 2, 3}));
-  EXPECT_EQ(s.lights.webs[0].group, "row");
-  EXPECT_EQ(s.lights.webs[0].name, "luminaire 1");
-  EXPECT_EQ(s.lights.webs[1].name, "up");
-  EXPECT_NEAR(s.lights.webs[0].scale[0] * kWhiteEfficacy, 0.5, 1e-12);
-  EXPECT_LT(length(s.lights.webs[1].axes.y - Vec3{0, 0, 1}), 1e-12);
-  EXPECT_EQ(s.lights.webs[0].web->opening.size, (Vec3{1.2, 0.2, 0}));
+  ASSERT_EQ(s.lights.luminaires.size(), 2u);
+  EXPECT_EQ(test::as_web(s.lights.luminaires[0]).web, test::as_web(s.lights.luminaires[1]).web);
+  EXPECT_EQ(s.lights.luminaires[0].position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(s.lights.luminaires[0].group, "row");
+  EXPECT_EQ(s.lights.luminaires[0].name, "luminaire 1");
+  EXPECT_EQ(s.lights.luminaires[1].name, "up");
+  EXPECT_NEAR(test::as_web(s.lights.luminaires[0]).scale[0] * kWhiteEfficacy, 0.5, 1e-12);
+  EXPECT_LT(length(test::as_web(s.lights.luminaires[1]).axes.y - Vec3{0, 0, 1}), 1e-12);
+  EXPECT_EQ(test::as_web(s.lights.luminaires[0]).web->opening.size, (Vec3{1.2, 0.2, 0}));
 }
 
 TEST_F(Luminaires, TakeTheFluxThatTheSceneGives) {
   const Scene s = read(R"({ "file": "lamp.ies", "position": [0, 0, 3], "luminous_flux": 1790, "maintenance_factor": 0.8,
       "dimming": 0.5 }, { "file": "lamp.ies", "position": [0, 0, 3], "power": [1, 2, 3] })");
-  EXPECT_NEAR(s.lights.webs[0].scale[0] * kLampFlux, 10 * 0.8 * 0.5, 1e-6);
-  EXPECT_NEAR(s.lights.webs[1].scale[2] * kLampFlux, 3, 1e-6);
+  EXPECT_NEAR(test::as_web(s.lights.luminaires[0]).scale[0] * kLampFlux, 10 * 0.8 * 0.5, 1e-6);
+  EXPECT_NEAR(test::as_web(s.lights.luminaires[1]).scale[2] * kLampFlux, 3, 1e-6);
   EXPECT_EQ(s.channels(), 3);
 }
 
@@ -52,8 +53,8 @@ TEST_F(Luminaires, TiltChangesTheFluxOfTheFileAndNotThatOfTheScene) {
   folder_.write("tilted.ies", "TILT=INCLUDE\n1\n2\n0 90\n1 .8\n1 -1 1 3 1 1 2 0 0 0\n1 1 9\n0 45 90\n0\n100 100 100\n");
   const Scene s = read(R"({ "file": "tilted.ies", "position": [0, 0, 3], "aim": [1, 0, 0] },
       { "file": "tilted.ies", "position": [0, 0, 3], "aim": [1, 0, 0], "luminous_flux": 179 })");
-  EXPECT_NEAR(s.lights.webs[0].scale[0] * kWhiteEfficacy, 0.8, 1e-12);
-  EXPECT_NEAR(s.lights.webs[1].scale[0] * kLampFlux, 1, 1e-6);
+  EXPECT_NEAR(test::as_web(s.lights.luminaires[0]).scale[0] * kWhiteEfficacy, 0.8, 1e-12);
+  EXPECT_NEAR(test::as_web(s.lights.luminaires[1]).scale[0] * kLampFlux, 1, 1e-6);
 }
 
 TEST_F(Luminaires, AFileThatDoesNotAddUpIsReportedOnce) {

@@ -6,6 +6,7 @@
 
 #include "io/text.h"
 #include "tests/io/reading.h"
+#include "tests/support/luminaires.h"
 
 namespace clerestory {
 namespace {
@@ -124,13 +125,13 @@ TEST_F(SceneFile, LuminairesArePointsWithTheirFluxDimmedAndGrouped) {
   const Scene scene = read_with(R"("luminaires": [
       { "type": "point", "position": [1, 2, 3], "luminous_flux": 358, "dimming": 0.5, "group": "desk", "name": "bulb" },
       { "type": "point", "position": [0, 0, 1], "power": [3, 2, 1] } ])");
-  ASSERT_EQ(scene.lights.points.size(), 2u);
-  EXPECT_EQ(scene.lights.points[0].position, (Vec3{1, 2, 3}));
-  EXPECT_DOUBLE_EQ(scene.lights.points[0].power[0], 1);
-  EXPECT_EQ(scene.lights.points[0].group, "desk");
-  EXPECT_EQ(scene.lights.points[0].name, "bulb");
-  EXPECT_EQ(scene.lights.points[1].power, Spectrum(3, 2, 1));
-  EXPECT_EQ(scene.lights.points[1].name, "luminaire 2");
+  ASSERT_EQ(scene.lights.luminaires.size(), 2u);
+  EXPECT_EQ(scene.lights.luminaires[0].position, (Vec3{1, 2, 3}));
+  EXPECT_DOUBLE_EQ(test::as_point(scene.lights.luminaires[0]).power[0], 1);
+  EXPECT_EQ(scene.lights.luminaires[0].group, "desk");
+  EXPECT_EQ(scene.lights.luminaires[0].name, "bulb");
+  EXPECT_EQ(test::as_point(scene.lights.luminaires[1]).power, Spectrum(3, 2, 1));
+  EXPECT_EQ(scene.lights.luminaires[1].name, "luminaire 2");
 }
 
 TEST_F(SceneFile, SkyAndSunBecomeIrradiance) {

@@ -3,6 +3,7 @@
 
 #include "meshing/make_lightmap.h"
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/illumination/place_lights.h"
 #include "solver/spaces/lit_sides.h"
 #include "solver/visibility/ray_scene.h"
 #include "tests/meshing/mesh_checks.h"

@@ -8,9 +8,10 @@
 
 #include "solver/form_factors/point_to_polygon.h"
 #include "solver/geometry/polygon.h"
-#include "solver/lights/point_lights.h"
+#include "solver/lights/luminaire.h"
 #include "solver/model/random_stream.h"
 #include "solver/sampling/unit_square.h"
+#include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {
@@ -166,8 +167,8 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
 
 TEST(LightSampler, DensityIsTheOneOfTheSampleThatWasDrawn) {
   Lights lights;
-  lights.points.push_back({"lamp", {0.2, 0.3, 0.4}, Spectrum(20)});
-  lights.suns.push_back({normalized({0.3, -0.5, 0.8}), Spectrum(2)});
+  lights.luminaires.push_back(test::point_lamp({0.2, 0.3, 0.4}, 20));
+  lights.suns.push_back({{normalized({0.3, -0.5, 0.8}), Spectrum(2)}});
   for (const std::size_t count : {1u, 30u, 3000u}) {
     const Lit lit(swarm(count), lights);
     RandomStream random(9, 9);
@@ -294,17 +295,18 @@ TEST(LightSampler, PatchesLampsSpotsAndSunsTogetherAreExactOnAverage) {
   Lights lights;
   RandomStream random(8, 8);
   for (int i = 0; i < 30; ++i) {
-    lights.points.push_back({"point", anywhere(random) * 3, Spectrum(1 + 10 * random.uniform())});
+    const Vec3 here = anywhere(random) * 3;
+    lights.luminaires.push_back(test::point_lamp(here, 1 + 10 * random.uniform()));
     const Vec3 axis = sphere_direction(random.uniform(), random.uniform());
-    lights.spots.push_back({"spot", anywhere(random) * 3, axis, Spectrum(5), 0.2, 0.2 + random.uniform()});
+    const Vec3 there = anywhere(random) * 3;
+    lights.luminaires.push_back(test::spot_lamp(there, axis, 5, 0.2, 0.2 + random.uniform()));
   }
-  lights.suns.push_back({normalized({0.3, -0.5, 0.8}), Spectrum(2)});
-  lights.suns.push_back({normalized({-0.3, -0.5, -0.8}), Spectrum(3)});
+  lights.suns.push_back({{normalized({0.3, -0.5, 0.8}), Spectrum(2)}});
+  lights.suns.push_back({{normalized({-0.3, -0.5, -0.8}), Spectrum(3)}});
   const Lit lit(swarm(20), lights);
   for (const Place& at : places(15)) {
     double exact = exact_irradiance(lit.patches, at), sharp = 0;
-    for (const auto& lamp : lights.points) sharp += open_irradiance(lamp, at.p, at.n)[0];
-    for (const auto& lamp : lights.spots) sharp += open_irradiance(lamp, at.p, at.n)[0];
+    for (const Luminaire& lamp : lights.luminaires) sharp += open_irradiance(lamp, at.p, at.n)[0];
     for (const Sun& sun : lights.suns) sharp += sun.normal_irradiance[0] * std::max(0.0, dot(at.n, sun.direction));
     exact += sharp;
     const Mean m = mean(40'000, [&](int) { return draw(lit.sampler, at, random, false).irradiance[0]; });
@@ -318,13 +320,13 @@ TEST(LightSampler, SmallLightsAreTheSumOfWhatIsNotInShadow) {
   b.rectangle({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}).rectangle({-50, 20, 1}, {100, 0, 0}, {0, 0, 50});
   Lights lights;
   for (int i = 0; i < 41; ++i)
-    lights.points.push_back({"lamp", {i - 20.0, i % 3 == 0 ? 30.0 : 10.0, 3.0}, Spectrum(50 + i)});
-  lights.spots.push_back({"spot", {0, 0, 4}, {0, 0, -1}, Spectrum(100), 0.4, 0.6});
-  lights.suns.push_back({normalized({0, -0.5, 0.8}), Spectrum(20)});
+    lights.luminaires.push_back(test::point_lamp({i - 20.0, i % 3 == 0 ? 30.0 : 10.0, 3.0}, 50 + i));
+  lights.luminaires.push_back(test::spot_lamp({0, 0, 4}, {0, 0, -1}, 100, 0.4, 0.6));
+  lights.suns.push_back({{normalized({0, -0.5, 0.8}), Spectrum(20)}});
   const Lit lit(b.build(), lights);
   const Place at{{0.5, 0.2, lit.rays.lift()}, {0, 0, 1}};
-  double exact = open_irradiance(lights.spots[0], at.p, at.n)[0] + 20 * lights.suns[0].direction.z;
-  for (const auto& lamp : lights.points)
+  double exact = 20 * lights.suns[0].direction.z;
+  for (const Luminaire& lamp : lights.luminaires)
     if (lamp.position.y < 20) exact += open_irradiance(lamp, at.p, at.n)[0];
   EXPECT_NEAR(lit.sampler.small_lights(at.p, at.n, 64, 1)[0], exact, 1e-5 * exact);  // the sun is a disc
 }

@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "solver/illumination/direct.h"
-#include "solver/lights/point_lights.h"
+#include "solver/lights/luminaire.h"
 #include "solver/lights/sky.h"
 #include "solver/lights/sun.h"
 #include "solver/model/random_stream.h"
 #include "solver/sampling/unit_square.h"
+#include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {
@@ -45,7 +46,7 @@ TEST(SkyRadiance, OfAnOvercastSkyLightsAFacadeByTheClosedForm) {
 
 TEST(SkyRadiance, BelowTheHorizonIsTheGroundLitBySkyAndSun) {
   Lights lights = with_sky(SkyModel::uniform, 50, 0.2);
-  lights.suns.push_back({normalized({0, -1, 1}), Spectrum(200)});
+  lights.suns.push_back({{normalized({0, -1, 1}), Spectrum(200)}});
   EXPECT_NEAR(SkyRadiance(lights)(normalized({1, 0, -0.1}))[0], 0.2 / kPi * (50 + 200 / std::sqrt(2.0)), 1e-9);
 }
 
@@ -65,8 +66,8 @@ TEST(Sun, IsADiscOfHalfADegreeAroundItsDirection) {
 }
 
 TEST(PointLights, FluxIsTheIntegralOfTheIntensity) {
-  const SpotLuminaire spot{"spot", {}, normalized({1, 2, -1}), Spectrum(30), 0.3, 0.7};
-  const PointLuminaire point{"point", {}, Spectrum(100)};
+  const Luminaire spot = test::spot_lamp({}, normalized({1, 2, -1}), 30, 0.3, 0.7);
+  const Luminaire point = test::point_lamp({}, 100);
   double spot_sum = 0, point_sum = 0;
   constexpr std::uint32_t kRays = 1 << 16;
   for (std::uint32_t k = 0; k < kRays; ++k) {
@@ -80,7 +81,7 @@ TEST(PointLights, FluxIsTheIntegralOfTheIntensity) {
 }
 
 TEST(PointLights, IrradianceFallsWithTheSquareOfTheDistanceAndTheCosine) {
-  const PointLuminaire lamp{"lamp", {0, 0, 3}, Spectrum(4 * kPi * 1000)};  // 1000 W/sr
+  const Luminaire lamp = test::point_lamp({0, 0, 3}, 4 * kPi * 1000);  // 1000 W/sr
   EXPECT_NEAR(open_irradiance(lamp, {0, 0, 0}, {0, 0, 1})[0], 1000.0 / 9, 1e-9);
   EXPECT_NEAR(open_irradiance(lamp, {4, 0, 0}, {0, 0, 1})[0], 1000.0 / 25 * 0.6, 1e-9);
   EXPECT_EQ(open_irradiance(lamp, {0, 0, 4}, {0, 0, 1})[0], 0);
@@ -90,7 +91,7 @@ TEST(DirectLight, OfALampInAClosedRoomIsItsWholeFlux) {
   const PatchSet patches = test::room_of_2160_patches().build();
   const RayScene rays(patches);
   Lights lights;
-  lights.points.push_back({"lamp", {2.5, 2.0, 2.4}, Spectrum(70)});
+  lights.luminaires.push_back(test::point_lamp({2.5, 2.0, 2.4}, 70));
   const Problem problem{patches, rays, lights};
   const DirectLight direct = direct_light(Illumination(problem), {.lamp_rays = 64});
   double arrived = 0;
@@ -106,7 +107,7 @@ TEST(DirectLight, OfTheSunIsItsNormalIlluminanceTimesTheCosineWhereNothingShades
   const PatchSet patches = b.build();
   const RayScene rays(patches);
   Lights lights;
-  lights.suns.push_back({{0, 0, 1}, Spectrum(800)});
+  lights.suns.push_back({{{0, 0, 1}, Spectrum(800)}});
   const Problem problem{patches, rays, lights};
   const DirectLight direct = direct_light(Illumination(problem), {.lamp_rays = 64});
   double on_floor = 0;
@@ -125,7 +126,7 @@ TEST(DirectLight, OfTheSunThroughASmallHoleLosesNothingOnCoarsePatches) {
   const PatchSet patches = b.build();
   const RayScene rays(patches);
   Lights lights;
-  lights.suns.push_back({{0, 0, 1}, Spectrum(800)});
+  lights.suns.push_back({{{0, 0, 1}, Spectrum(800)}});
   const Problem problem{patches, rays, lights};
   const Illumination light(problem);
   double sum = 0, sum_of_squares = 0;

@@ -8,10 +8,11 @@
 #include "solver/form_factors/point_to_polygon.h"
 #include "solver/illumination/direct.h"
 #include "solver/illumination/light_sampler.h"
-#include "solver/lights/point_lights.h"
+#include "solver/lights/luminaire.h"
 #include "solver/model/random_stream.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/spaces/lit_sides.h"
+#include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {
@@ -35,8 +36,8 @@ std::shared_ptr<const PhotometricWeb> web_of(const F& f, const Vec3& opening = {
 }
 double cosine(double v, double) { return std::max(0.0, std::cos(v * kPi / 180)); }
 
-WebLuminaire lamp_at(const Vec3& position, std::shared_ptr<const PhotometricWeb> web, double scale = 1) {
-  return {"lamp", std::move(web), position, {}, Spectrum(scale), {}};
+PlacedLuminaire lamp_at(const Vec3& position, std::shared_ptr<const PhotometricWeb> web, double scale = 1) {
+  return {{"lamp", position, {}, WebLuminaire{std::move(web), {}, Spectrum(scale)}}};
 }
 
 struct Lit {
@@ -82,12 +83,12 @@ TEST(Aimed, AxesStayARightHandedFrameWithTheBeamAlongAim) {
 TEST(WebLuminaire, ShinesToC0AndRotationTurnsItTowardsY) {
   // Light towards C0 only: 300 cd at gamma = 45, falling to nothing at C = 90.
   const auto web = web_of([](double, double C) { return 300 * std::max(0.0, std::cos(C * kPi / 180)); });
-  WebLuminaire lamp = lamp_at({0, 0, 3}, web);
+  Luminaire lamp = lamp_at({0, 0, 3}, web);
   const Vec3 up{0, 0, 1};
   const double exact = 300 * std::cos(kPi / 4) / 18;  // I cos / r2 at 45 degrees from 3 m
   EXPECT_NEAR(open_irradiance(lamp, {3, 0, 0}, up)[0], exact, 1e-6);
   EXPECT_EQ(open_irradiance(lamp, {-3, 0, 0}, up)[0], 0);
-  lamp.axes = aimed(WebType::C, {0, 0, -1}, 90);
+  std::get<WebLuminaire>(lamp.kind).axes = aimed(WebType::C, {0, 0, -1}, 90);
   EXPECT_NEAR(open_irradiance(lamp, {0, 3, 0}, up)[0], exact, 1e-6);
   EXPECT_NEAR(open_irradiance(lamp, {3, 0, 0}, up)[0], 0, 1e-6);
 }
@@ -96,7 +97,7 @@ TEST(WebLuminaire, NearItsOpeningALambertianPanelIsTheAreaThatItIs) {
   // 0.6 m square of luminance 1: irradiance in the middle and off it, from contact to where it is a point.
   const double side = 0.6, z = 2;
   Lights lights;
-  lights.webs.push_back(lamp_at({0, 0, z}, web_of(cosine, {side, side, 0}), side * side));
+  lights.luminaires.push_back(lamp_at({0, 0, z}, web_of(cosine, {side, side, 0}), side * side));
   PatchBuilder b(0.5);
   b.rectangle({-50, -50, -5}, {100, 0, 0}, {0, 100, 0});
   const Lit lit(b.build(), lights);
@@ -117,9 +118,9 @@ TEST(WebLuminaire, NearItsOpeningALambertianPanelIsTheAreaThatItIs) {
 TEST(WebLuminaire, OneShadowRayOfAPathFindsOnAverageWhatAllRaysOfAGatherFind) {
   Lights lights;
   for (int i = 0; i < 12; ++i)
-    lights.webs.push_back(lamp_at({i % 4 * 1.0, i / 4 * 1.2, 2.0}, web_of(cosine, {1.2, 0.2, 0}), 10.0 + i));
-  lights.webs[3].axes = aimed(WebType::C, normalized({1, 1, -0.5}), 30);
-  lights.points.push_back({"point", {1, 1, 1}, Spectrum(20), {}});
+    lights.luminaires.push_back(lamp_at({i % 4 * 1.0, i / 4 * 1.2, 2.0}, web_of(cosine, {1.2, 0.2, 0}), 10.0 + i));
+  std::get<WebLuminaire>(lights.luminaires[3].kind).axes = aimed(WebType::C, normalized({1, 1, -0.5}), 30);
+  lights.luminaires.push_back(test::point_lamp({1, 1, 1}, 20));
   for (const bool wall : {false, true}) {
     PatchBuilder b(0.5);
     b.rectangle({-50, -50, 0}, {100, 0, 0}, {0, 100, 0});
@@ -161,9 +162,9 @@ Arrived arrived(const Lights& lights) {
 
 TEST(WebLuminaire, ALargePanelSendsItsWholeFluxIntoTheRoom) {
   Lights lights;
-  lights.webs.push_back(lamp_at({2.5, 2.0, 2.4}, web_of(cosine, {1.2, 1.2, 0}), 3));
+  lights.luminaires.push_back(lamp_at({2.5, 2.0, 2.4}, web_of(cosine, {1.2, 1.2, 0}), 3));
   const Arrived a = arrived(lights);
-  const double flux = 3 * lights.webs[0].web->flux;
+  const double flux = 3 * test::as_web(lights.luminaires[0]).web->flux;
   EXPECT_NEAR(a.emitted, flux, 1e-9 * flux);
   EXPECT_NEAR(a.flux, flux, 3e-3 * flux);  // 16 rays a patch, edges 256
   EXPECT_NEAR(a.escaped + a.absorbed, 0, 1e-9);
@@ -175,7 +176,7 @@ TEST(WebLuminaire, FortyLampsThatShareRaysLoseNothing) {
       [](double v, double C) { return cosine(v, C) * cosine(v, C) * (2 + std::cos(C * kPi / 180)); }, {0.15, 0.15, 0});
   double flux = 0;
   for (int i = 0; i < 40; ++i) {
-    lights.webs.push_back(lamp_at({0.3 + i % 8 * 0.6, 0.4 + i / 8 * 0.8, 2.4}, web, 1 + i % 3));
+    lights.luminaires.push_back(lamp_at({0.3 + i % 8 * 0.6, 0.4 + i / 8 * 0.8, 2.4}, web, 1 + i % 3));
     flux += (1 + i % 3) * web->flux;
   }
   const Arrived a = arrived(lights);
@@ -188,7 +189,7 @@ TEST(WebLuminaire, InTheVeryPlaneOfTheCeilingLightsTheRoomAndNotTheRoomAbove) {
   PatchBuilder b(0.5);
   b.rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 8, 8).rectangle({0, 0, 3}, {0, 4, 0}, {4, 0, 0}, 8, 8);
   Lights lights;
-  lights.webs.push_back(lamp_at({2, 2, 3}, web_of(cosine, {0.6, 0.6, 0}), 1));
+  lights.luminaires.push_back(lamp_at({2, 2, 3}, web_of(cosine, {0.6, 0.6, 0}), 1));
   const Lit lit(b.build(), lights);
   EXPECT_NEAR(lit.sampler.small_lights({2, 2, lit.rays.lift()}, {0, 0, 1}, 1, 1)[0], 1 / 9.0,
               0.02 / 9);  // 0.6 m at 3 m: 1.3 % less than a point

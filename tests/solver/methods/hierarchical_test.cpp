@@ -212,7 +212,7 @@ TEST(Hierarchical, ASunPatchLightsTheRoomAndIsHalvedAlongItsEdge) {
   sun.direction = normalized({0.1, 0.23, 1});
   sun.normal_irradiance = Spectrum(1000);
   Lights lights;
-  lights.suns.push_back(sun);
+  lights.suns.push_back({sun});
   const Room room(b.build(), lights);
   const HierarchicalSolution h = room.solve({.shortest_edge = 0.05});
   double direct = 0;

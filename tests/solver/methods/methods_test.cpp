@@ -11,6 +11,7 @@
 #include "solver/paths/path_tracer.h"
 #include "solver/run/solve.h"
 #include "solver/spaces/lit_sides.h"
+#include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {
@@ -258,7 +259,7 @@ TEST(LitSides, InTheOpenEveryPatchThatALampReachesIsKept) {
     if (has_area)
       b.material(0.5, 1000).rectangle({0, 0, 3}, {0, 0.1, 0}, {0.1, 0, 0});
     else
-      lights.points.push_back({"lamp", {0, 0, 3}, Spectrum(100), {}});
+      lights.luminaires.push_back(test::point_lamp({0, 0, 3}, 100));
     PatchSet patches = b.build();
     make_patches(patches, std::vector<bool>(2 * patches.triangle_count(), true));
     const RayScene rays(patches);

@@ -1,0 +1,45 @@
+#pragma once
+// The light of a scene as a solve wants it: where it stands among the patches, and what was found out about it.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "solver/model/light_spec.h"
+
+namespace clerestory {
+
+inline constexpr std::uint32_t kNoMirror = 0xffffffff;
+
+/// A luminaire, or its image behind a mirror.
+struct PlacedLuminaire : Luminaire {
+  std::uint32_t mirror = kNoMirror;  ///< of an image: the mirror (RayScene::mirrors) that shows it
+};
+
+/// The sun, or its image.
+struct PlacedSun : Sun {
+  std::uint32_t mirror = kNoMirror;  ///< as of PlacedLuminaire
+};
+
+/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room,
+/// or bright patches that lie together. Only a hint where to look: what it misses is found as well.
+struct LightArea {
+  std::vector<Vec3> corners;                   ///< counter-clockwise around the normal, local frame [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, wound alike [m]
+  Vec3 centre, normal;                         ///< normal: unit, to where the light goes
+  double radius = 0, area = 0;                 ///< radius: farthest point from the centre [m], area [m2]
+  double brightness = 0;                       ///< mean radiance that comes out of it [W/(m2 sr)]
+};
+
+/// Positions are in the local frame of the patches.
+struct Lights {
+  std::vector<PlacedLuminaire> luminaires;  ///< the scene's, then images
+  std::optional<Sky> sky;
+  std::vector<PlacedSun> suns;      ///< the scene's, then images
+  std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
+
+  bool empty() const { return luminaires.empty() && !sky && suns.empty(); }
+};
+
+}  // namespace clerestory

@@ -28,12 +28,10 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
   if (scene.lights.sky && s.openings == 0) out.push_back("openings: the sky looks into no room");
   if (scene.lights.luminaires.empty()) out.push_back("luminaires: the scene has none");
-  const auto none_is = [&](MaterialKind kind) {
-    return std::ranges::none_of(s.patches.materials, [&](const Material& m) { return m.kind == kind; });
-  };
-  if (none_is(MaterialKind::glass)) out.push_back("glass: the scene has none");
-  if (none_is(MaterialKind::mirror)) out.push_back("mirrors: the scene has none");
-  if (none_is(MaterialKind::diffuser)) out.push_back("diffusers: the scene has none");
+  for (std::size_t kind = 1; kind < std::size(kMaterialKindNames); ++kind)
+    if (std::ranges::none_of(s.patches.materials,
+                             [&](const Material& m) { return static_cast<std::size_t>(m.kind) == kind; }))
+      out.push_back(std::string(kMaterialKindNames[kind]) + ": the scene has none");
   if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
   if (s.lit_sides.lamp_interiors)
     out.push_back(counted(s.lit_sides.lamp_interiors, "emitting side") + " that shine on nothing but their own lamp");

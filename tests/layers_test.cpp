@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,20 @@ TEST(Layers, HeadersForUsersOfTheLibraryShowNoLibrary) {
     if (i.own || !i.file.ends_with(".h") || !starts_with_any(i.file, doors)) continue;
     EXPECT_TRUE(is_standard(i.header)) << i.file << " includes <" << i.header << ">";
   }
+}
+
+TEST(Streams, EachHasANumberOfItsOwn) {
+  std::ifstream in(fs::path(CLERESTORY_SOURCE_DIR) / "solver/model/streams.h");
+  const std::regex enumerator(R"(\s*k[A-Za-z]+ = (0x[0-9a-f]+),.*)");
+  std::set<std::string> numbers;
+  std::size_t count = 0;
+  for (std::string line; std::getline(in, line);) {
+    std::smatch part;
+    if (!std::regex_match(line, part, enumerator)) continue;
+    EXPECT_TRUE(numbers.insert(part[1]).second) << part[1] << " is used twice";
+    ++count;
+  }
+  EXPECT_GT(count, 20u) << "the list was not found";
 }
 
 }  // namespace

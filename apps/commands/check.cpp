@@ -28,9 +28,9 @@ std::string colour(const Spectrum& s) {
 }
 
 std::string describe(const Material& m) {
-  std::string text = m.kind == MaterialKind::glass ? "glass" : "reflectance " + colour(m.reflectance);
-  if (m.kind == MaterialKind::mirror) text = "mirror, " + text;
-  if (m.is_sheet() && m.kind != MaterialKind::mirror) text += ", transmittance " + colour(m.transmittance);
+  std::string text = m.lets_rays_pass() ? "glass" : "reflectance " + colour(m.reflectance);
+  if (m.turns_rays()) text = "mirror, " + text;
+  if (m.lets_rays_pass() || m.scatters_through()) text += ", transmittance " + colour(m.transmittance);
   if (m.total_power)
     text += ", emits " + colour(*m.total_power) + " W in all";
   else if (m.emits())

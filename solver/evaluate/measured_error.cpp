@@ -6,14 +6,13 @@
 #include "solver/gather/gather.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 namespace {
-
-enum StreamKind : std::uint64_t { kErrorPoints = 0x71, kErrorPaths = 0x72, kSensorPaths = 0x73 };
 
 constexpr int kFewestPaths = 64;          ///< a point, for a standard error that means something
 constexpr int kPilotPaths = 8;            ///< at each of the fewest points, to learn how long paths are
@@ -138,7 +137,7 @@ MeasuredError measure_sensor_error(const Problem& problem, std::span<const Senso
   const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
   return compare(
       problem, samples, [&](std::size_t s) { return point_of(number_of(s)); }, effort, rays_spent,
-      stream_key(seed, kSensorPaths), monitor);
+      stream_key(seed, kSensorErrorPaths), monitor);
 }
 
 }  // namespace clerestory

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 
 namespace clerestory {
 namespace {
@@ -29,7 +30,7 @@ const std::array<Pattern, kPatterns>& patterns() {
     auto made = std::make_unique<std::array<Pattern, kPatterns>>();
     for (std::size_t p = 0; p < kPatterns; ++p)
       for (std::size_t k = 0; k < kQuickSamples; ++k) {
-        const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(0x7061747465726e, p));
+        const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(kVisibilityPattern, p));
         for (std::size_t dim = 0; dim < 4; ++dim)
           (*made)[p][k / kLanes].u[dim][k % kLanes] = static_cast<float>(u[dim]);
       }

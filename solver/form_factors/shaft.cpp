@@ -142,7 +142,7 @@ void Blockers::find_screens(const PatchSet& patches, const std::vector<std::uint
   std::vector<SharedEdge> sides;
   std::vector<Vec3> normal(patches.triangle_count());
   for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
-    if (!blocks[t] || patches.is_glass(TriangleId{t})) continue;
+    if (!blocks[t] || patches.front_material(TriangleId{t}).lets_rays_pass()) continue;
     const auto corner = corners_of(patches, t);
     normal[t] = normalized(vector_area(corner));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -163,7 +163,7 @@ void Blockers::find_screens(const PatchSet& patches, const std::vector<std::uint
   }
   std::map<std::size_t, std::vector<std::size_t>> groups;
   for (std::size_t t = 0; t < patches.triangle_count(); ++t)
-    if (blocks[t] && !patches.is_glass(TriangleId{t})) groups[joined.find(t)].push_back(t);
+    if (blocks[t] && !patches.front_material(TriangleId{t}).lets_rays_pass()) groups[joined.find(t)].push_back(t);
   for (const auto& [first, members] : groups) {
     const Frame frame(normal[first]);
     const double offset = dot(frame.n, patches.vertices[patches.corners[first][0]]);

@@ -10,7 +10,9 @@
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/polygon_view.h"
+#include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
 namespace {
@@ -45,11 +47,9 @@ class View {
         values[k] = light_.sky(hit.direction(rays[k])) * kPi * hit.transmittance;
       } else if (hit.patch.valid()) {
         Spectrum back = light_.lamps.glow()[hit.patch];
-        if (owner == kNobody && lamp_rays_ > 0 && !hit.reflected && light_.lamps.is_explicit(hit.patch)) {
-          const double cos_patch = -dot(problem.patches.normal[hit.patch], directions[k]);
-          const double lamp = lamp_rays_ * light_.lamps.density(hit.patch, p_, frame_.n, hit.distance, cos_patch, true);
-          back *= density[k] / (density[k] + lamp);
-        }
+        if (owner == kNobody && lamp_rays_ > 0)
+          back *=
+              balance_heuristic(density[k], lamp_rays_ * light_.lamps.density(hit, p_, frame_.n, directions[k], true));
         values[k] = back * hit.transmittance;
       }
     }
@@ -80,19 +80,13 @@ int lamp_rays(const Illumination& light, const GatherPattern& pattern, const Gat
 bool sees_lamps(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                 unsigned long long& rays) {
   if (!light.lamps.has_emitters()) return false;
-  for (std::size_t first = 0; first < GatherPattern::kLampPilots; first += 16) {
-    SegmentPacket segments;
-    unsigned active = 0;
-    for (int lane = 0; lane < 16; ++lane) {
-      const auto& u = pattern.lamp_pilots()[first + static_cast<std::size_t>(lane)];
-      const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], true);
-      segments.set(lane, p, s.density > 0 ? s.end : p);
-      if (s.density > 0) active |= 1u << lane;
-    }
-    rays += 16;
-    if (active && light.problem.rays.visible16(segments, static_cast<std::uint16_t>(active))) return true;
-  }
-  return false;
+  return any_visible(light.problem.rays, GatherPattern::kLampPilots, [&](std::uint32_t k, Vec3& from, Vec3& to) {
+    const auto& u = pattern.lamp_pilots()[k];
+    const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], true);
+    from = p, to = s.end;
+    ++rays;
+    return s.density > 0;
+  });
 }
 
 /// What a few rays find of sky that belongs to none of the openings: part of the view may be sky, or end at a bright
@@ -276,34 +270,22 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
                         const GatherPlan& plan, const View& view) {
   const int count = pattern.quality().lamp_rays;
   const RayBudget& budget = pattern.quality().bundle;
+  const RayScene& rays = light.problem.rays;
   Spectrum sum(0.0);
-  for (int first = 0; first < count; first += 16) {
-    SegmentPacket segments;
-    std::array<Spectrum, 16> open;
-    std::array<Vec3, 16> end;
-    unsigned active = 0;
-    for (int lane = 0; lane < 16; ++lane) {
-      const auto k = static_cast<std::size_t>(lane);
-      const auto& u = pattern.lamp_choices()[static_cast<std::size_t>(first) + k];
-      const LightSample s = light.lamps.sample(p, frame.n, u[0], u[1], u[2], true);
-      segments.set(lane, p, s.density > 0 ? s.end : p);
-      if (!(s.density > 0)) continue;
-      const Vec3 d = normalized(s.end - p);
-      if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
-      const std::size_t rays = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
-      const double bundle = static_cast<double>(rays) * budget.strata() * dot(frame.n, d) / kPi;
-      const double lamp = count * s.density;
-      active |= 1u << lane;
-      end[k] = s.end;
-      open[k] = s.irradiance * (lamp / (lamp + bundle));
-    }
-    if (!active) continue;
-    for (unsigned seen = light.problem.rays.visible16(segments, static_cast<std::uint16_t>(active)); seen;
-         seen &= seen - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(seen));
-      sum += open[k] * light.problem.rays.glass_transmittance(p, end[k]);
-    }
+  auto shadows = shadow_rays<Spectrum>(rays, [&](const Spectrum& irradiance, const Vec3& from, const Vec3& to) {
+    sum += irradiance * rays.glass_transmittance(from, to);
+  });
+  for (int k = 0; k < count; ++k) {
+    const auto& u = pattern.lamp_choices()[static_cast<std::size_t>(k)];
+    const LightSample s = light.lamps.sample(p, frame.n, u[0], u[1], u[2], true);
+    if (!(s.density > 0)) continue;
+    const Vec3 d = normalized(s.end - p);
+    if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
+    const std::size_t share = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
+    const double bundle = static_cast<double>(share) * budget.strata() * dot(frame.n, d) / kPi;
+    shadows.send(p, s.end, s.irradiance * balance_heuristic(count * s.density, bundle));
   }
+  shadows.trace();
   return sum / count;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -11,16 +10,18 @@
 #include "solver/hierarchy/gather_links.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/spaces/closure.h"
+#include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
 namespace {
 
-constexpr std::uint64_t kPairs = 0xb1;
 constexpr std::size_t kPatchesInBlock = 32;
-constexpr int kClosureRays = 64;
+constexpr int kRaysForClosure = 64;
+constexpr std::uint32_t kPairsOfLink = 16;
 
 Vec3 centre_of(const Sphere& s) { return {s.centre[0], s.centre[1], s.centre[2]}; }
 
@@ -101,31 +102,24 @@ class PatchLinks {
   void link(std::uint32_t p, std::uint32_t q, bool near) {
     const PatchSet& patches = scene_.problem.patches;
     const RayScene& scene = scene_.problem.rays;
-    const std::uint64_t key = stream_key(options_.seed + kPairs, p, q);
-    SegmentPacket segments;
-    std::array<double, 16> kernel;
-    std::array<Vec3, 16> from, to;
-    unsigned active = 0;
+    const std::uint64_t key = stream_key(stream_key(options_.seed, kBfPairs), p, q);
     double open = 0, seen = 0;
-    for (int lane = 0; lane < 16; ++lane) {
-      const auto k = static_cast<std::size_t>(lane);
-      const auto u = sobol4(static_cast<std::uint32_t>(lane), key);
-      const auto v = sobol4(static_cast<std::uint32_t>(lane), mix_bits(key));
+    auto shadows = shadow_rays<double>(scene, [&](double kernel, const Vec3& from, const Vec3& to) {
+      seen += kernel / kPairsOfLink * luminous_mean(scene.glass_transmittance(from, to));
+    });
+    for (std::uint32_t k = 0; k < kPairsOfLink; ++k) {
+      const auto u = sobol4(k, key), v = sobol4(k, mix_bits(key));
       const PatchId a = scene_.leaf_at(p, v[0]), b = scene_.leaf_at(q, v[1]);
       const Vec3 x = point_on_triangle(patches.corner_positions(a), u[0], u[1]);
       const Vec3 y = point_on_triangle(patches.corner_positions(b), u[2], u[3]);
-      kernel[k] = point_kernel(x, patches.normal[a], y, patches.normal[b]);
-      from[k] = x + patches.normal[a] * scene.lift(), to[k] = y + patches.normal[b] * scene.lift();
-      segments.set(lane, from[k], to[k]);
-      if (kernel[k] > 0) active |= 1u << lane;
-      open += kernel[k] / 16;
+      const double kernel = point_kernel(x, patches.normal[a], y, patches.normal[b]);
+      if (!(kernel > 0)) continue;
+      shadows.send(x + patches.normal[a] * scene.lift(), y + patches.normal[b] * scene.lift(), kernel);
+      open += kernel / kPairsOfLink;
     }
-    if (!active) return;
-    rays += 16;
-    for (unsigned left = scene.visible16(segments, static_cast<std::uint16_t>(active)); left; left &= left - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      seen += kernel[k] / 16 * luminous_mean(scene.glass_transmittance(from[k], to[k]));
-    }
+    shadows.trace();
+    if (!(open > 0)) return;
+    rays += kPairsOfLink;
     if (!(seen > 0)) return;
     double F = open * scene_.tree.area[q];
     if (near && scene_.tree.is_leaf(p) && scene_.tree.is_leaf(q))
@@ -154,7 +148,7 @@ BfLinks bf_refine(const Problem& problem, const ElementTree& tree, const Field& 
   BfLinks out;
   Transport& transport = out.transport;
   transport.E_sky = Field(n, problem.patches.channels);
-  Closure closure = measure_closure(problem.patches, problem.rays, kClosureRays, options.seed);
+  Closure closure = measure_closure(problem.patches, problem.rays, kRaysForClosure, options.seed);
   transport.arrives.resize(n), transport.escapes.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     transport.arrives[i] = static_cast<float>(luminous_mean(closure.arrives[i]));

@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
+#include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
 namespace {
 
-constexpr std::uint64_t kProbe = 0xa1;
 constexpr std::size_t kParts = 4;
 constexpr int kDirections = 16, kPairs = 16, kPoints = 8;
 constexpr int kMostHalvings = 4;  // of an element in one call
@@ -69,12 +70,8 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       if (hit.escaped())
         value[s] = std::numbers::pi * luminous_mean(light.sky(hit.direction({x, d})) * hit.transmittance);
       if (!hit.patch.valid()) continue;
-      double weight = 1;
-      if (pairs > 0 && !hit.reflected && light.lamps.is_explicit(hit.patch)) {
-        const double cos_p = kDirections * dot(normal, d) / std::numbers::pi;
-        const double cos_q = -dot(patches.normal[hit.patch], d);
-        weight = cos_p / (cos_p + pairs * light.lamps.density(hit.patch, x, normal, hit.distance, cos_q, true));
-      }
+      const double other = pairs > 0 ? pairs * light.lamps.density(hit, x, normal, d, true) : 0;
+      const double weight = balance_heuristic(kDirections * dot(normal, d) / std::numbers::pi, other);
       value[s] = weight * luminous_mean(B[hit.patch] * hit.transmittance);
     }
     bundle.add(value);
@@ -85,31 +82,25 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
   if (pairs > 0) {
     std::array<std::array<double, kParts>, kPairs> found{};
     const std::uint64_t pick = mix_bits(key), place = mix_bits(pick);
-    for (std::size_t s = 0; s < kParts; ++s) {
-      SegmentPacket segments;
-      std::array<Vec3, kPairs> from, to;
-      unsigned active = 0;
-      for (int lane = 0; lane < kPairs; ++lane) {
-        const auto k = static_cast<std::size_t>(lane);
-        const auto u = sobol4(static_cast<std::uint32_t>(lane), pick);
-        const auto v = sobol4(static_cast<std::uint32_t>(lane), place);
-        from[k] = point_on_triangle(parts[s], v[0], v[1]) + lift;
-        const LightSample sample = light.lamps.sample(from[k], normal, u[0], u[1], u[2], true);
-        to[k] = sample.density > 0 ? sample.end : from[k];
-        segments.set(lane, from[k], to[k]);
+    struct Load {
+      double* found;
+      double light;
+    };
+    auto shadows = shadow_rays<Load>(problem.rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
+      *load.found = load.light * luminous_mean(problem.rays.glass_transmittance(from, to));
+    });
+    for (std::size_t s = 0; s < kParts; ++s)
+      for (std::uint32_t k = 0; k < kPairs; ++k) {
+        const auto u = sobol4(k, pick), v = sobol4(k, place);
+        const Vec3 from = point_on_triangle(parts[s], v[0], v[1]) + lift;
+        const LightSample sample = light.lamps.sample(from, normal, u[0], u[1], u[2], true);
         if (!(sample.density > 0)) continue;
-        const double cos_p = std::max(0.0, dot(normal, normalized(to[k] - from[k]))) / std::numbers::pi;
-        found[k][s] = pairs * luminous_mean(B[sample.patch]) * cos_p / (kDirections * cos_p + pairs * sample.density);
-        if (found[k][s] > 0) active |= 1u << lane;
+        const double cos_p = std::max(0.0, dot(normal, normalized(sample.end - from))) / std::numbers::pi;
+        const double sent =
+            pairs * luminous_mean(B[sample.patch]) * cos_p / (kDirections * cos_p + pairs * sample.density);
+        if (sent > 0) shadows.send(from, sample.end, {&found[k][s], sent});
       }
-      const unsigned seen = active ? problem.rays.visible16(segments, static_cast<std::uint16_t>(active)) : 0;
-      for (std::size_t k = 0; k < kPairs; ++k) {
-        if (!(seen >> k & 1u))
-          found[k][s] = 0;
-        else if (problem.rays.has_glass())
-          found[k][s] *= luminous_mean(problem.rays.glass_transmittance(from[k], to[k]));
-      }
-    }
+    shadows.trace();
     for (const auto& x : found) lamps.add(x);
     rays += kPairs * kParts;
   }
@@ -183,8 +174,8 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
         const double weight = luminous_mean(patches.albedo(p)) * triangle_area(corners) / A0;
         // Little varies by more than twice its mean between four parts.
         if (edge < 2 * options.shortest_edge || 2 * weight < options.tolerance / 2) continue;
-        const Variation v =
-            irradiance_variation(light, B, corners, patches.normal[p], stream_key(options.seed, kProbe, e), spent[k]);
+        const Variation v = irradiance_variation(light, B, corners, patches.normal[p],
+                                                 stream_key(options.seed, kVariationProbe, e), spent[k]);
         if (v.difference > options.tolerance * v.E &&
             weight * v.difference > options.tolerance / 2 * std::max(v.E, dark))
           stake[k] = static_cast<float>(weight * v.difference);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -12,15 +11,17 @@
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/bundle_net.h"
+#include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
 namespace {
 
-constexpr std::uint64_t kBundle = 0x91, kLampPairs = 0x92, kPairPilot = 0x93;
 constexpr double kMostOwed = 0.1;         // of the limit for one link: a row may not drift by more while it is cut
 constexpr int kZones = 6, kSectors = 12;  // parts of the sphere
 constexpr std::size_t kParts = kZones * kSectors;
@@ -43,13 +44,6 @@ struct Arrival {
   std::uint16_t part;  ///< of the sphere; 0 for surfaces
   bool bright;
 };
-
-/// Weight of a ray of one estimator that might have been one of the other's, from the densities of both (rays per solid
-/// angle): the power heuristic with exponent 2.
-double shared_weight(double cos_p, double own, double other) {
-  const double squares = own * own + other * other;
-  return squares > 0 ? cos_p * own / squares : 0;
-}
 
 /// One receiver after another; holds the memory they need in turn.
 class Tracer {
@@ -169,9 +163,8 @@ class Tracer {
         double weight = 1.0 / R;
         if (bright) {
           const double cos_p = dot(from.normal, d) / std::numbers::pi;
-          const double cos_q = -dot(patches_.normal[hit.patch], d);
-          const double density = light_.lamps.density(hit.patch, x, from.normal, hit.distance, cos_q, true);
-          weight = shared_weight(cos_p, R * cos_p, options_.lamp_rays * density);
+          const double density = light_.lamps.density(hit, x, from.normal, d, true);
+          weight = cos_p * power_heuristic_over_density(R * cos_p, options_.lamp_rays * density);
         }
         if (bright) bright_hits_ += 1.0 / R;
         add_arrival(hit.patch, weight, passes, bright, d);
@@ -214,45 +207,35 @@ class Tracer {
   /// Under the sky bright patches mostly lie outdoors, and most receivers do not see them: a few pairs tell. Without
   /// any that gets through, bright patches are left to the bundle.
   bool sees_bright_patches() const {
-    SegmentPacket segments;
-    unsigned active = 0;
-    for (int lane = 0; lane < 16; ++lane) {
-      const Pair p = pair(static_cast<std::uint32_t>(lane), mix_bits(key_ + kPairPilot));
-      segments.set(lane, p.from, p.to);
-      if (p.sample.density > 0) active |= 1u << lane;
-    }
-    return active && light_.problem.rays.visible16(segments, static_cast<std::uint16_t>(active));
+    return any_visible(light_.problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
+      const Pair p = pair(k, mix_bits(key_ + kLampPairPilot));
+      from = p.from, to = p.to;
+      return p.sample.density > 0;
+    });
   }
 
   void send_pairs() {
-    const Problem& problem = light_.problem;
+    const RayScene& rays = light_.problem.rays;
     const std::uint64_t key = mix_bits(key_ + kLampPairs);
-    for (int first = 0; first < options_.lamp_rays; first += 16) {
-      SegmentPacket segments;
-      std::array<Vec3, 16> from, to, direction;
-      std::array<double, 16> weight{};
-      std::array<PatchId, 16> source;
-      unsigned active = 0;
-      for (int lane = 0; lane < 16; ++lane) {
-        const auto k = static_cast<std::size_t>(lane);
-        const Pair p = pair(static_cast<std::uint32_t>(first + lane), key);
-        from[k] = p.from, to[k] = p.to;
-        segments.set(lane, from[k], to[k]);
-        if (!(p.sample.density > 0)) continue;
-        direction[k] = normalized(to[k] - from[k]);
-        const double cos_p = std::max(0.0, dot(p.normal, direction[k])) / std::numbers::pi;
-        weight[k] = shared_weight(cos_p, options_.lamp_rays * p.sample.density, options_.bundle_rays * cos_p);
-        source[k] = p.sample.patch;
-        if (weight[k] > 0) active |= 1u << lane;
-      }
-      if (!active) continue;
-      for (unsigned seen = problem.rays.visible16(segments, static_cast<std::uint16_t>(active)); seen;
-           seen &= seen - 1) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(seen));
-        const double passes = luminous_mean(problem.rays.glass_transmittance(from[k], to[k]));
-        add_arrival(source[k], weight[k], passes, true, direction[k]);
-      }
+    struct Load {
+      PatchId source;
+      double weight;
+      Vec3 direction;
+    };
+    auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
+      const double passes = luminous_mean(rays.glass_transmittance(from, to));
+      add_arrival(load.source, load.weight, passes, true, load.direction);
+    });
+    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(options_.lamp_rays); ++k) {
+      const Pair p = pair(k, key);
+      if (!(p.sample.density > 0)) continue;
+      const Vec3 direction = normalized(p.to - p.from);
+      const double cos_p = std::max(0.0, dot(p.normal, direction)) / std::numbers::pi;
+      const double weight =
+          cos_p * power_heuristic_over_density(options_.lamp_rays * p.sample.density, options_.bundle_rays * cos_p);
+      if (weight > 0) shadows.send(p.from, p.to, {p.sample.patch, weight, direction});
     }
+    shadows.trace();
   }
 
   void add_arrival(PatchId source, double weight, double passes, bool bright, const Vec3& d) {

@@ -1,22 +1,21 @@
 #include "solver/illumination/direct.h"
 
 #include <algorithm>
-#include <bit>
 #include <numbers>
 
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/polygon_view.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
 namespace {
-
-enum StreamKind : std::uint64_t { kLampPoints = 0x11, kSkyRays = 0x12, kLampRays = 0x13, kOpeningRays = 0x14 };
 
 /// What a point of a patch is shown of a light.
 struct Shown {
@@ -33,7 +32,7 @@ class PatchSampler {
       : problem_(problem),
         corners_(problem.patches.corner_positions(PatchId{patch})),
         normal_(problem.patches.normal[patch]),
-        key_(stream_key(options.seed, kLampPoints, patch)),
+        key_(stream_key(options.seed, kLampPointsOfPatch, patch)),
         options_(options) {}
 
   const Vec3& normal() const { return normal_; }
@@ -91,38 +90,29 @@ class PatchSampler {
 
   template <class Light>
   Tally look(std::uint64_t key, int count, const Light& light) const {
-    const double lift = problem_.rays.lift();
+    const RayScene& rays = problem_.rays;
     Tally tally;
-    for (int first = 0; first < count; first += 16) {
-      SegmentPacket segments;
-      std::array<Spectrum, 16> open;
-      std::array<Vec3, 16> from, to;
-      unsigned facing = 0;
-      for (int lane = 0; lane < 16; ++lane) {
-        const auto k = static_cast<std::size_t>(lane);
-        const auto u = sobol4(static_cast<std::uint32_t>(first + lane), key);
-        from[k] = point_on_triangle(corners_, u[0], u[1]) + normal_ * lift;
-        const auto pick = [&] { return sobol4(static_cast<std::uint32_t>(first + lane), key + 1)[0]; };
-        const Shown shown = light(from[k], u[2], u[3], pick);
-        to[k] = short_of(shown.end, from[k], lift);
-        open[k] = shown.irradiance;
-        segments.set(lane, from[k], to[k]);
-        if (open[k].is_black()) continue;
-        if (shown.mirror == kNoMirror) {
-          facing |= 1u << lane;
-          continue;
-        }
-        const Spectrum passes = problem_.rays.transmittance_by_mirror(from[k], to[k], shown.mirror);
-        tally.sum += open[k] * passes;
-        tally.facing += 1, tally.visible += !passes.is_black();
+    auto shadows = shadow_rays<Spectrum>(rays, [&](const Spectrum& irradiance, const Vec3& from, const Vec3& to) {
+      tally.sum += irradiance * rays.glass_transmittance(from, to);
+      ++tally.visible;
+    });
+    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
+      const auto u = sobol4(k, key);
+      const Vec3 from = point_on_triangle(corners_, u[0], u[1]) + normal_ * rays.lift();
+      const auto pick = [&] { return sobol4(k, key + 1)[0]; };
+      const Shown shown = light(from, u[2], u[3], pick);
+      if (shown.irradiance.is_black()) continue;
+      ++tally.facing;
+      const Vec3 to = short_of(shown.end, from, rays.lift());
+      if (shown.mirror == kNoMirror) {
+        shadows.send(from, to, shown.irradiance);
+        continue;
       }
-      const unsigned seen = problem_.rays.visible16(segments, static_cast<std::uint16_t>(facing));
-      tally.facing += std::popcount(facing), tally.visible += std::popcount(seen);
-      for (unsigned left = seen; left; left &= left - 1) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(left));
-        tally.sum += open[k] * problem_.rays.glass_transmittance(from[k], to[k]);
-      }
+      const Spectrum passes = rays.transmittance_by_mirror(from, to, shown.mirror);
+      tally.sum += shown.irradiance * passes;
+      tally.visible += !passes.is_black();
     }
+    shadows.trace();
     return tally;
   }
 
@@ -238,7 +228,7 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
     }
     return sum / count;
   };
-  const std::uint64_t key = stream_key(options.seed, kOpeningRays, patch);
+  const std::uint64_t key = stream_key(options.seed, kOpeningRaysOfPatch, patch);
   std::vector<std::uint32_t> seen;
   for (const std::uint32_t k : over) {
     looked_at = {k};
@@ -255,7 +245,7 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
   const Problem& problem = light.problem;
   const Frame frame(problem.patches.normal[patch]);
   const auto corners = problem.patches.corner_positions(PatchId{patch});
-  const std::uint64_t key = stream_key(options.seed, kSkyRays, patch);
+  const std::uint64_t key = stream_key(options.seed, kSkyRaysOfPatch, patch);
   Spectrum sum(0.0);
   for (int k = 0; k < options.sky_rays; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), key);
@@ -299,7 +289,7 @@ void balance_lamps(const Problem& problem, DirectLight& direct, const DirectOpti
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number)
       balances[number] =
-          balance(problem, problem.lights.luminaires[number], rays, stream_key(options.seed, kLampRays, number));
+          balance(problem, problem.lights.luminaires[number], rays, stream_key(options.seed, kFluxOfLuminaire, number));
   });
   for (const EnergyBalance& b : balances) {
     direct.energy.emitted += b.emitted;

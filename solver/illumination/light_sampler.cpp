@@ -10,6 +10,7 @@
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
 namespace {
@@ -157,35 +158,23 @@ double LightSampler::density(PatchId q, const Vec3& p, const Vec3& n, double dis
          (cos_q * problem_.patches.area[q]);
 }
 
+double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool emitters_only) const {
+  if (hit.reflected || !hit.patch.valid() || !is_explicit(hit.patch)) return 0;
+  return density(hit.patch, p, n, hit.distance, -dot(problem_.patches.normal[hit.patch], d), emitters_only);
+}
+
 Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const {
   const RayScene& rays = problem_.rays;
   Spectrum E(0.0);
-  SegmentPacket segments;
-  std::array<Vec3, 16> end;
-  std::array<Spectrum, 16> open;
-  unsigned queued = 0;
-  const auto flush = [&] {
-    if (queued < 3) {  // single rays cost less than a packet that is nearly empty
-      for (unsigned k = 0; k < queued; ++k) E += open[k] * rays.transmittance(p, end[k]);
-      queued = 0;
-      return;
-    }
-    for (unsigned seen = rays.visible16(segments, static_cast<std::uint16_t>((1u << queued) - 1)); seen;
-         seen &= seen - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(seen));
-      E += open[k] * rays.glass_transmittance(p, end[k]);
-    }
-    queued = 0;
-  };
+  auto shadows = shadow_rays<Spectrum>(rays, [&](const Spectrum& irradiance, const Vec3& from, const Vec3& to) {
+    E += irradiance * rays.glass_transmittance(from, to);
+  });
   const auto look = [&](const Vec3& to, const Spectrum& irradiance, std::uint32_t mirror) {
     if (irradiance.is_black()) return;
-    if (mirror != kNoMirror) {
+    if (mirror != kNoMirror)
       E += irradiance * rays.transmittance_by_mirror(p, to, mirror);
-      return;
-    }
-    segments.set(static_cast<int>(queued), p, to);
-    end[queued] = to, open[queued] = irradiance;
-    if (++queued == 16) flush();
+    else
+      shadows.send(p, to, irradiance);
   };
   // In the tree's order lamps that share a packet are neighbours.
   const double lift = rays.lift();
@@ -202,14 +191,14 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
       look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight, lamp.mirror);
     }
   }
-  flush();
+  shadows.trace();
   for (const PlacedSun& sun : problem_.lights.suns) {
     for (int k = 0; k < sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
       look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays), sun.mirror);
     }
-    flush();
+    shadows.trace();
   }
   return E;
 }

@@ -42,6 +42,9 @@ class LightSampler {
   /// explicit patch q at `distance`, `cos_q` being the cosine there.
   double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q, bool emitters_only) const;
 
+  /// The same where a ray from p along d (unit) ends; 0 when that is no bright patch that shadow rays look for.
+  double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool emitters_only) const;
+
   /// Irradiance at p of luminaires and of the sun: a shadow ray to each lamp, more to openings that are near, sun_rays
   /// to each sun.
   Spectrum small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;

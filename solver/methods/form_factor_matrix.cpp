@@ -15,6 +15,7 @@
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/spaces/closure.h"
 
@@ -24,7 +25,7 @@ namespace {
 constexpr std::size_t kTile = 32;
 /// Relative error of an unblocked row sum: quadrature of far pairs, mostly far below.
 constexpr double kQuadratureError = 3e-4;
-constexpr int kClosureRays = 128;
+constexpr int kRaysForClosure = 128;
 /// Standard error of one factor above which its visibility is sampled again by more rays.
 constexpr double kPairError = 3e-5;
 /// Standard error of a row's sum above which all its doubtful pairs are sampled again, by kSecondSamples rays. Patches
@@ -132,7 +133,7 @@ struct Builder {
         SampledVisibility visibility;
         const bool needs_rays = may_be_blocked(p, q, in_shaft);
         // The stream belongs to the pair, whichever way round the tiles list it.
-        const std::uint64_t key = stream_key(seed, std::min(i, j), std::max(i, j));
+        const std::uint64_t key = stream_key(stream_key(seed, kMatrixPairs), std::min(i, j), std::max(i, j));
         const SampledTriangle sampled_p{p.corner, p.normal}, sampled_q{q.corner, q.normal};
         (needs_rays ? sampled_here : unblocked_here) += 1;
         if (needs_rays) {
@@ -368,7 +369,7 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
   F.row_sum = F.raw_row_sum;
   if (!F.complete) return F;
 
-  const Closure closure = measure_closure(patches, rays, kClosureRays, options.seed);
+  const Closure closure = measure_closure(patches, rays, kRaysForClosure, options.seed);
   F.rays += closure.rays;
   for (std::size_t i = 0; i < n; ++i) {
     bool all_arrives = true;

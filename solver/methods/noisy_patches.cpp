@@ -6,6 +6,7 @@
 
 #include "solver/gather/gather.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
 
@@ -50,7 +51,6 @@ std::vector<std::uint32_t> noisy_patches(const Problem& problem, const Solution&
 
 std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, double fewest,
                                  const GatherQuality& quality, std::uint64_t seed, const Monitor& monitor) {
-  constexpr std::uint64_t kNoisyPatches = 0x81;
   const PatchSet& patches = problem.patches;
   const Illumination light(problem, solution.B);
   const GatherPattern pattern(quality, seed);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/model/parallel.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
@@ -11,7 +12,6 @@ namespace clerestory {
 
 Solution path_trace(const Illumination& light, const DirectLight& direct, const Closure& closure,
                     const PathOptions& options, const Monitor& monitor) {
-  constexpr std::uint64_t kPathsOfPatch = 0x51;
   const Problem& problem = light.problem;
   const PatchSet& patches = problem.patches;
   const std::size_t n = patches.patch_count();

@@ -6,13 +6,13 @@
 
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 namespace {
 
-constexpr std::uint64_t kShotRays = 0x41;
 constexpr std::uint32_t kLeastRays = 16, kMostRaysAPiece = 4096;
 /// The ambient is shot for good when it leaves less than this share of what is unshot. Higher saves rounds but brings
 /// noise to dim corners: they get it, and give it back.
@@ -109,7 +109,7 @@ void trace(const Problem& problem, const Piece& piece, std::uint64_t seed, std::
   const PatchSet& patches = problem.patches;
   const Frame frame(patches.normal[piece.from]);
   const auto corners = patches.corner_positions(PatchId{piece.from});
-  const std::uint64_t key = stream_key(seed, kShotRays, piece.from);
+  const std::uint64_t key = stream_key(seed, kShots, piece.from);
   const Vec3 lifted = frame.n * problem.rays.lift();
   for (std::uint32_t k = 0; k < piece.count; ++k) {
     const auto u = sobol4(piece.first + k, key);

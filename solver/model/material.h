@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "solver/model/channels.h"
 
@@ -12,6 +13,8 @@ namespace clerestory {
 /// passes light scattered to its other side, the same from both. mirror: sends light on as a plane mirror does, from
 /// both sides.
 enum class MaterialKind { diffuse, glass, diffuser, mirror };
+/// In the order of the enumerators.
+inline constexpr std::string_view kMaterialKindNames[] = {"diffuse", "glass", "diffuser", "mirror"};
 
 struct Material {
   std::string name;
@@ -23,6 +26,18 @@ struct Material {
   int sides = 2;                        ///< 1: the back (wound clockwise) is black and does not emit
 
   friend bool operator==(const Material&, const Material&) = default;
+
+  // What a surface of this material does with light. Transport asks these, never the kind: a new kind answers them
+  // here, and says in PatchSet::scattered() and PatchSet::scatter() what becomes of light that falls on it.
+
+  /// Its sides take light, and are patches; else rays go on from it.
+  bool receives() const { return kind == MaterialKind::diffuse || kind == MaterialKind::diffuser; }
+  /// Rays go straight on, with the share that a sheet of `transmittance` passes at their angle.
+  bool lets_rays_pass() const { return kind == MaterialKind::glass; }
+  /// Rays are turned as by a plane mirror, with the share `reflectance`.
+  bool turns_rays() const { return kind == MaterialKind::mirror; }
+  /// Of what it receives, the share `transmittance` leaves its other side, scattered.
+  bool scatters_through() const { return kind == MaterialKind::diffuser; }
   /// A sheet that is the same from both sides and is cut out of what lies in its plane.
   bool is_sheet() const { return kind != MaterialKind::diffuse; }
   bool emits() const { return total_power ? !total_power->is_black() : !exitance.is_black(); }

@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "solver/model/units.h"
+
 namespace clerestory {
 namespace {
 
@@ -13,14 +15,15 @@ bool side_reflects_and_emits(const PatchSet& p, PatchId i) {
 /// tau, and what lies behind the patches of diffusers.
 void join_diffuser_sides(PatchSet& p) {
   for (std::size_t i = 0; i < p.patch_count(); ++i) {
-    if (!p.is_diffuser(p.triangle[i])) continue;
+    if (!p.front_material(p.triangle[i]).scatters_through()) continue;
     if (p.tau.value.empty()) p.tau = Field(p.patch_count(), p.channels);
     p.tau.set(i, p.materials[p.material(PatchId{i})].transmittance);
   }
   if (p.tau.value.empty()) return;
   for (std::size_t i = 0; i < p.patch_count(); ++i) {
     p.behind_begin.push_back(static_cast<std::uint32_t>(p.behind.size()));
-    if (p.is_diffuser(p.triangle[i])) p.behind.push_back({p.side_patch[p.triangle[i]][1 - p.side[i]], 1});
+    if (p.front_material(p.triangle[i]).scatters_through())
+      p.behind.push_back({p.side_patch[p.triangle[i]][1 - p.side[i]], 1});
   }
   p.behind_begin.push_back(static_cast<std::uint32_t>(p.behind.size()));
 }
@@ -49,6 +52,14 @@ PatchId PatchSet::patch_at(TriangleId t, Side s, double u, double v) const {
   return PatchId{std::size_t{splits[node].patch}};
 }
 
+PatchSet::Scattering PatchSet::scatter(PatchId p, double pick) const {
+  if (tau.value.empty()) return {normal[p], rho[p]};
+  const double through = luminous_mean(tau[p]), back = luminous_mean(rho[p]);
+  const double passes = through > 0 ? through / (through + back) : 0;
+  if (pick < passes) return {-normal[p], tau[p] / passes};
+  return {normal[p], rho[p] / (1 - passes)};
+}
+
 double PatchSet::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
 
 void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
@@ -63,13 +74,13 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   p.behind.clear();
   p.side_patch.assign(p.triangle_count(), {PatchId{}, PatchId{}});
   for (std::size_t t = 0; t < p.triangle_count(); ++t) {
-    if (p.is_glass(TriangleId{t}) || p.is_mirror(TriangleId{t})) continue;
+    if (!p.front_material(TriangleId{t}).receives()) continue;
     const auto& c = p.corners[t];
     const Vec3 a = p.vertices[c[0]];
     const Vec3 scaled_normal = cross(p.vertices[c[1]] - a, p.vertices[c[2]] - a);
     const double area = length(scaled_normal) / 2;
     if (!(area > 0)) continue;
-    const bool both = p.is_diffuser(TriangleId{t}) && (wanted[2 * t] || wanted[2 * t + 1]);
+    const bool both = p.front_material(TriangleId{t}).scatters_through() && (wanted[2 * t] || wanted[2 * t + 1]);
     for (const Side side : {kFront, kBack}) {
       if (!wanted[2 * t + side] && !both) continue;
       p.side_patch[t][side] = PatchId{p.triangle.size()};

@@ -70,9 +70,8 @@ struct PatchSet {
   std::size_t triangle_count() const { return corners.size(); }
   MaterialId material(PatchId p) const { return side_material[triangle[p]][side[p]]; }
   SurfaceId surface(PatchId p) const { return side_surface[triangle[p]][side[p]]; }
-  bool is_glass(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::glass; }
-  bool is_diffuser(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::diffuser; }
-  bool is_mirror(TriangleId t) const { return materials[side_material[t][kFront]].kind == MaterialKind::mirror; }
+  /// Of its front; sheets have the same on both sides.
+  const Material& front_material(TriangleId t) const { return materials[side_material[t][kFront]]; }
   /// The patch that a ray meets in its triangle t (T counted before splits), at barycentric weights u, v of corners
   /// 1, 2.
   PatchId patch_at(TriangleId t, Side side, double u, double v) const;
@@ -90,6 +89,15 @@ struct PatchSet {
     for (const Behind& other : patches_behind(p)) B += tau[p] * E[other.patch] * other.share;
     return B;
   }
+  /// One way on for light that fell on patch p, chosen by pick in [0, 1) in proportion to the light that takes it: the
+  /// side it leaves from (unit normal), and the share of it over the probability of the choice.
+  struct Scattering {
+    Vec3 normal;
+    Spectrum share;
+  };
+  Scattering scatter(PatchId p, double pick) const;
+  /// Whether that is a choice at all.
+  bool scatters_through(PatchId p) const { return !tau.value.empty() && !tau[p].is_black(); }
   /// Share of the light that falls on patch p and is not absorbed [1].
   Spectrum albedo(std::size_t p) const { return tau.value.empty() ? rho[p] : rho[p] + tau[p]; }
 };

@@ -6,6 +6,7 @@
 #include "solver/lights/sky.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
 #include "solver/openings/rims.h"
@@ -14,7 +15,6 @@
 namespace clerestory {
 namespace {
 
-constexpr std::uint64_t kGapRays = 0x81;
 constexpr int kFewRays = 16, kRays = 128;  ///< to a side, to sift and to judge
 constexpr double kSeesSky = 0.1;           ///< share of the rays out that meet sky
 constexpr double kIndoors = 0.2;           ///< most of the rays in that do
@@ -128,13 +128,13 @@ std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& ra
   if (candidates.size() > kMostCandidates) candidates.erase(candidates.begin() + kMostCandidates, candidates.end());
   std::vector<LightArea> openings;
   for (std::size_t k = 0; k < candidates.size() && openings.size() < kMostOpenings; ++k)
-    if (judge.shows_more(candidates[k].opening, openings, stream_key(kGapRays + 1, k)))
+    if (judge.shows_more(candidates[k].opening, openings, stream_key(kGapsSifted, k)))
       openings.push_back(std::move(candidates[k].opening));
   // The inner face of a thick wall may have come before the outer one.
   for (std::size_t k = openings.size(); k > 0; --k) {
     LightArea opening = std::move(openings[k - 1]);
     openings.erase(openings.begin() + static_cast<std::ptrdiff_t>(k - 1));
-    if (judge.shows_more(opening, openings, stream_key(kGapRays + 2, k)))
+    if (judge.shows_more(opening, openings, stream_key(kGapsSiftedAgain, k)))
       openings.insert(openings.begin() + static_cast<std::ptrdiff_t>(k - 1), std::move(opening));
   }
   return openings;

@@ -45,7 +45,7 @@ std::vector<EdgeUse> opaque_edges(const PatchSet& patches) {
   std::vector<EdgeUse> uses;
   uses.reserve(3 * patches.triangle_count());
   for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
-    if (patches.is_glass(TriangleId{t})) continue;
+    if (patches.front_material(TriangleId{t}).lets_rays_pass()) continue;
     const auto& c = patches.corners[t];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = c[k].value, b = c[(k + 1) % 3].value;

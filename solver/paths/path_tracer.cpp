@@ -5,6 +5,7 @@
 
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
+#include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
@@ -32,11 +33,8 @@ Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, cons
                    unsigned long long& rays) {
   const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], false);
   if (s.irradiance.is_black()) return Spectrum(0.0);
-  double weight = 1;
-  if (s.density > 0) {
-    const double bundle = dot(n, normalized(s.end - p)) / std::numbers::pi;
-    weight = s.density / (s.density + bundle);
-  }
+  const double weight =
+      s.density > 0 ? balance_heuristic(s.density, dot(n, normalized(s.end - p)) / std::numbers::pi) : 1.0;
   ++rays;
   const RayScene& scene = light.problem.rays;
   const bool by_mirror = s.mirror != kNoMirror;
@@ -56,12 +54,6 @@ Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n
   if (passes.is_black()) return passes;
   const double all = s.preference + light.openings.preference(p, n, s.direction, s.opening) + cos_p / std::numbers::pi;
   return light.sky(s.direction) * passes * (cos_p * s.per_choice * s.preference / all);
-}
-
-/// Of the light that patch q scatters, the share that leaves its other side; below 1 where it reflects.
-double share_that_passes(const PatchSet& patches, PatchId q) {
-  const double through = luminous_mean(patches.tau[q]), back = luminous_mean(patches.rho[q]);
-  return through > 0 ? through / (through + back) : 0;
 }
 
 }  // namespace
@@ -89,31 +81,20 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     ++rays;
     throughput *= hit.transmittance;
     if (hit.escaped()) {
-      double weight = 1;
-      if (!hit.reflected && !light.openings.empty()) {
-        const double bundle = dot(n, d) / std::numbers::pi;
-        weight = bundle / (bundle + light.openings.preference(p, n, d));
-      }
+      const double other = hit.reflected || light.openings.empty() ? 0 : light.openings.preference(p, n, d);
+      const double weight = balance_heuristic(dot(n, d) / std::numbers::pi, other);
       return E + throughput * light.sky(hit.direction({p, d})) * (weight * std::numbers::pi);
     }
     if (!hit.patch.valid()) return E;
     const Spectrum M = patches.M[hit.patch];
     if (!M.is_black()) {
-      double weight = 1;
-      if (!hit.reflected && light.lamps.is_explicit(hit.patch)) {
-        const double bundle = dot(n, d) / std::numbers::pi;
-        const double cos_patch = -dot(patches.normal[hit.patch], d);
-        const double lamp = light.lamps.density(hit.patch, p, n, hit.distance, cos_patch, false);
-        weight = bundle / (bundle + lamp);
-      }
-      E += throughput * M * weight;
+      E += throughput * M * balance_heuristic(dot(n, d) / std::numbers::pi, light.lamps.density(hit, p, n, d, false));
     }
-    const double passes = patches.tau.value.empty() ? 0 : share_that_passes(patches, hit.patch);
-    const bool through = passes > 0 && random.uniform() < passes;
-    throughput *= through ? patches.tau[hit.patch] / passes : patches.rho[hit.patch] / (1 - passes);
+    const auto on = patches.scatter(hit.patch, patches.scatters_through(hit.patch) ? random.uniform() : 0);
+    throughput *= on.share;
     if (throughput.is_black()) return E;
     p = hit.position({p, d});
-    n = through ? -patches.normal[hit.patch] : patches.normal[hit.patch];
+    n = on.normal;
     p += n * problem.rays.lift();
     choice = {random.uniform(), random.uniform(), random.uniform()};
     if (!light.openings.empty()) opening = {random.uniform(), random.uniform(), random.uniform()};

@@ -15,6 +15,7 @@
 #include "solver/methods/progressive.h"
 #include "solver/model/error.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
@@ -23,8 +24,6 @@
 
 namespace clerestory {
 namespace {
-
-enum StreamKind : std::uint64_t { kSensorRays = 0x61, kVertexRays = 0x62 };
 
 Effort effort_of(const SolveOptions& options) { return effort(options.accuracy, options.tighten); }
 
@@ -94,10 +93,10 @@ void require_matrix(const Problem& problem, const SolveOptions& options) {
 
 /// Irradiance at places by the method of the solution.
 PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, std::size_t count,
-                              const PointOf& point_of, const GatherQuality& quality, int paths, StreamKind kind,
+                              const PointOf& point_of, const GatherQuality& quality, int paths, Stream stream,
                               std::string_view stage, const SolveOptions& options, const Monitor& monitor) {
   if (options.method == Method::path)
-    return trace_paths_at(Illumination(problem), count, point_of, paths, stream_key(options.seed, kind), stage,
+    return trace_paths_at(Illumination(problem), count, point_of, paths, stream_key(options.seed, stream), stage,
                           monitor);
   return gather_at(gather_illumination(problem, solution.B), count, point_of, GatherPattern(quality, options.seed),
                    stage, monitor);
@@ -158,7 +157,7 @@ SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_e
   if (!e.gathers_vertices || monitor.should_stop()) return solved;
   const PointIrradiance at_samples =
       irradiance_at(problem, solution, lightmap.sample_position.size(), sample_points(lightmap, problem.rays),
-                    e.vertices, e.paths, kVertexRays, "vertices", options, monitor);
+                    e.vertices, e.paths, kPathsOfSample, "vertices", options, monitor);
   set_points(at_samples, lightmap);
   solution.rays += at_samples.rays;
   return solved;
@@ -169,7 +168,7 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
                                       const Monitor& monitor) {
   const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
   const auto by = [&](const Effort& e, const Monitor& m) {
-    return irradiance_at(problem, solution, points.size(), point_of, e.sensors, e.paths_of_sensor, kSensorRays,
+    return irradiance_at(problem, solution, points.size(), point_of, e.sensors, e.paths_of_sensor, kPathsOfSensor,
                          "sensors", options, m);
   };
   PointIrradiance at_points = by(effort_of(options), monitor);

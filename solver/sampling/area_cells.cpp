@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -157,8 +158,8 @@ class Pilots {
 
 AreaCells::AreaCells(int last, std::uint64_t seed) {
   for (int grid = 0; grid <= last; ++grid) {
-    points_[static_cast<std::size_t>(grid)] = net(grid, stream_key(seed, 0xc1));
-    pilots_[static_cast<std::size_t>(grid)] = net(grid, stream_key(seed, 0xc2));
+    points_[static_cast<std::size_t>(grid)] = net(grid, stream_key(seed, kAreaPoints));
+    pilots_[static_cast<std::size_t>(grid)] = net(grid, stream_key(seed, kAreaPilots));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
@@ -41,16 +42,16 @@ Strata::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_k
 
 GatherPattern::GatherPattern(const GatherQuality& quality, std::uint64_t seed)
     : quality_(quality),
-      bundle_(quality.bundle, stream_key(seed, 1), stream_key(seed, 2)),
-      area_cells_(quality.area.last, stream_key(seed, 5)),
-      sun_key_(stream_key(seed, 4)) {
-  const std::uint64_t lamp_key = stream_key(seed, 3);
+      bundle_(quality.bundle, stream_key(seed, kGatherBundle), stream_key(seed, kGatherPilots)),
+      area_cells_(quality.area.last, stream_key(seed, kGatherAreas)),
+      sun_key_(stream_key(seed, kGatherSunPoints)) {
+  const std::uint64_t lamp_key = stream_key(seed, kGatherLampChoices);
   for (int k = 0; k < quality.lamp_rays; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), lamp_key);
     lamp_choices_.push_back({u[0], u[1], u[2]});
   }
   for (std::uint32_t k = 0; k < kLampPilots; ++k) {
-    const auto u = sobol4(k, stream_key(seed, 7));
+    const auto u = sobol4(k, stream_key(seed, kGatherLampPilots));
     lamp_pilots_.push_back({u[0], u[1], u[2]});
   }
 }

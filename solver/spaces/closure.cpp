@@ -5,12 +5,12 @@
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 
 Closure measure_closure(const PatchSet& patches, const RayScene& rays, int rays_per_patch, std::uint64_t seed) {
-  constexpr std::uint64_t kClosureRays = 0x21;
   const std::size_t n = patches.patch_count();
   Closure closure;
   closure.arrives = closure.escapes = Field(n, patches.channels);

@@ -10,16 +10,16 @@
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 14;   ///< patches between two looks at what is known by then
 constexpr std::size_t kLampSamples = 64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
-
-enum StreamKind : std::uint64_t { kSideRays = 0x31, kLampRays = 0x32, kLampSearch = 0x33, kOpeningRays = 0x34 };
 
 /// Patches that see each other, and what is known of each such space.
 class Spaces {
@@ -117,16 +117,13 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
   Found found;
   for (const PlacedLuminaire& lamp : problem.lights.luminaires) {
     if (lamp.mirror != kNoMirror) continue;
-    SegmentPacket segments;
-    unsigned facing = 0;
-    for (int lane = 0; lane < 16; ++lane) {
-      const Vec3& p = points[static_cast<std::size_t>(lane)];
-      const auto u = sobol4(static_cast<std::uint32_t>(lane), key + 1);
-      const Vec3 q = light_point(lamp, p, u[0], u[1]);
-      segments.set(lane, p, short_of(q, p, lift));
-      if (!open_irradiance(lamp, q, p, n).is_black()) facing |= 1u << lane;
-    }
-    if (facing && problem.rays.visible16(segments, static_cast<std::uint16_t>(facing))) found.lit = true;
+    found.lit = found.lit || any_visible(problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
+                  const auto u = sobol4(k, key + 1);
+                  from = points[k];
+                  const Vec3 q = light_point(lamp, from, u[0], u[1]);
+                  to = short_of(q, from, lift);
+                  return !open_irradiance(lamp, q, from, n).is_black();
+                });
   }
   for (std::uint32_t k = 0; k < samples && emitters.has_emitters(); ++k) {
     const auto u = sobol4(k, key);
@@ -147,7 +144,7 @@ void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) 
     for (std::size_t number = from; number < to; ++number) {
       const PlacedLuminaire& lamp = lamps[number];
       if (lamp.mirror != kNoMirror) continue;
-      const std::uint64_t key = stream_key(seed, kLampRays, number);
+      const std::uint64_t key = stream_key(seed, kLuminaireRays, number);
       for (std::size_t k = 0; k < rays_each; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), key);
         const Vec3 d = sphere_direction(u[0], u[1]);

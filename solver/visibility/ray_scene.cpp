@@ -40,7 +40,8 @@ struct Surfaces {
 
   void build(RTCDevice device, const PatchSet& patches, bool glass) {
     for (std::size_t t = 0; t < patches.triangle_count(); ++t)
-      if (patches.is_glass(TriangleId{t}) == glass) of_primitive.push_back(static_cast<std::uint32_t>(t));
+      if (patches.front_material(TriangleId{t}).lets_rays_pass() == glass)
+        of_primitive.push_back(static_cast<std::uint32_t>(t));
     handle = rtcNewScene(device);
     rtcSetSceneFlags(handle, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(handle, RTC_BUILD_QUALITY_MEDIUM);
@@ -100,7 +101,7 @@ struct RayScene::Impl {
 
   void find_mirrors(const PatchSet& patches) {
     for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
-      if (!patches.is_mirror(TriangleId{t})) continue;
+      if (!patches.front_material(TriangleId{t}).turns_rays()) continue;
       const auto& c = patches.corners[t];
       const Vec3 a = patches.vertices[c[0]];
       const Vec3 n = normalized(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a));
@@ -114,7 +115,7 @@ struct RayScene::Impl {
       plane = std::min(plane, kMostPlanes);
       mirror_of_triangle[t] = static_cast<std::uint32_t>(mirrors.size());
       mirrors.push_back({plane < planes.size() ? planes[plane].normal : n, static_cast<std::uint32_t>(plane),
-                         patches.materials[patches.side_material[t][kFront]].reflectance});
+                         patches.front_material(TriangleId{t}).reflectance});
     }
   }
 
@@ -286,12 +287,15 @@ std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) 
   return static_cast<std::uint16_t>(visible & active);
 }
 
-Spectrum RayScene::transmittance(const Vec3& from, const Vec3& to) const {
+bool RayScene::visible(const Vec3& from, const Vec3& to) const {
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   RTCRayHit r = ray_hit(from, to - from, 0, 1);
   rtcOccluded1(impl_->opaque.handle, &c, &r.ray);
-  if (r.ray.tfar < 0) return Spectrum(0.0);
-  return glass_transmittance(from, to);
+  return r.ray.tfar >= 0;
+}
+
+Spectrum RayScene::transmittance(const Vec3& from, const Vec3& to) const {
+  return visible(from, to) ? glass_transmittance(from, to) : Spectrum(0.0);
 }
 
 Spectrum RayScene::transmittance_by_mirror(const Vec3& from, const Vec3& image, std::uint32_t mirror) const {

@@ -78,6 +78,9 @@ class RayScene {
   /// Bit k is set when nothing opaque blocks segment k; glass is ignored. `active` has a bit for each segment to test.
   std::uint16_t visible16(const SegmentPacket& segments, std::uint16_t active = 0xffff) const;
 
+  /// Whether nothing opaque blocks one segment; glass is ignored.
+  bool visible(const Vec3& from, const Vec3& to) const;
+
   /// Share of light that passes from `from` to `to` (both lifted): 0 when something opaque blocks.
   Spectrum transmittance(const Vec3& from, const Vec3& to) const;
 

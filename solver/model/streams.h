@@ -1,0 +1,57 @@
+#pragma once
+// What random numbers are drawn for: the one list of streams. Each has a number of its own (tests/layers_test.cpp), so
+// that no two estimates share their noise; a key is made of seed, stream and what is estimated, by stream_key().
+
+#include <cstdint>
+
+namespace clerestory {
+
+enum Stream : std::uint64_t {
+  // Final gather: the same for all points.
+  kGatherBundle = 0x01,
+  kGatherPilots = 0x02,
+  kGatherLampChoices = 0x03,
+  kGatherSunPoints = 0x04,
+  kGatherAreas = 0x05,
+  kGatherLampPilots = 0x07,
+  kAreaPoints = 0xc1,
+  kAreaPilots = 0xc2,
+  // Direct light, by patch or luminaire.
+  kLampPointsOfPatch = 0x11,
+  kSkyRaysOfPatch = 0x12,
+  kFluxOfLuminaire = 0x13,
+  kOpeningRaysOfPatch = 0x14,
+  // Spaces, by patch, luminaire or opening.
+  kClosureRays = 0x21,
+  kSideRays = 0x31,
+  kLuminaireRays = 0x32,
+  kLampSearch = 0x33,
+  kOpeningRays = 0x34,
+  // Methods, by patch or pair of them.
+  kShots = 0x41,
+  kPathsOfPatch = 0x51,
+  kNoisyPatches = 0x84,
+  kMatrixPairs = 0xd1,
+  // Points, by number.
+  kPathsOfSensor = 0x61,
+  kPathsOfSample = 0x62,
+  kBuriedPoints = 0x63,
+  // Measured error, by point.
+  kErrorPoints = 0x71,
+  kErrorPaths = 0x72,
+  kSensorErrorPaths = 0x73,
+  // Search for openings, by gap: judging them, sifting them, and once more.
+  kGapRays = 0x81,
+  kGapsSifted = 0x82,
+  kGapsSiftedAgain = 0x83,
+  // Hierarchy, by receiver, element or link.
+  kBundle = 0x91,
+  kLampPairs = 0x92,
+  kLampPairPilot = 0x93,
+  kVariationProbe = 0xa1,
+  kBfPairs = 0xb1,
+  // Pairs of surfaces whose visibility is sampled: one pattern for all.
+  kVisibilityPattern = 0x7061747465726e,
+};
+
+}  // namespace clerestory

@@ -1,0 +1,78 @@
+#pragma once
+// Shadow rays in packets of sixteen.
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "solver/visibility/ray_scene.h"
+
+namespace clerestory {
+
+/// Segments wait until there are sixteen; then those that nothing opaque blocks arrive, in the order in which they were
+/// sent: arrive(load, from, to). What glass takes is left to arrive().
+///
+/// Load    what a segment carries.
+template <class Load, class Arrive>
+class ShadowRays {
+ public:
+  ShadowRays(const RayScene& rays, Arrive arrive) : rays_(rays), arrive_(std::move(arrive)) {}
+
+  /// Both ends are lifted off their surfaces.
+  void send(const Vec3& from, const Vec3& to, const Load& load) {
+    packet_.set(static_cast<int>(count_), from, to);
+    shots_[count_++] = {from, to, load};
+    if (count_ == kLanes) trace();
+  }
+  /// Lets the rest arrive; call it at the end, and wherever a coherent group ends.
+  void trace() {
+    unsigned visible = 0;
+    if (count_ < kFewest)
+      for (std::size_t k = 0; k < count_; ++k) visible |= (rays_.visible(shots_[k].from, shots_[k].to) ? 1u : 0u) << k;
+    else
+      visible = rays_.visible16(packet_, static_cast<std::uint16_t>((1u << count_) - 1));
+    for (; visible; visible &= visible - 1) {
+      const Shot& shot = shots_[static_cast<std::size_t>(std::countr_zero(visible))];
+      arrive_(shot.load, shot.from, shot.to);
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kLanes = 16, kFewest = 3;  ///< fewer cost less as single rays
+  struct Shot {
+    Vec3 from, to;
+    Load load;
+  };
+  const RayScene& rays_;
+  Arrive arrive_;
+  SegmentPacket packet_;
+  std::array<Shot, kLanes> shots_;
+  std::size_t count_ = 0;
+};
+
+template <class Load, class Arrive>
+ShadowRays<Load, Arrive> shadow_rays(const RayScene& rays, Arrive arrive) {
+  return {rays, std::move(arrive)};
+}
+
+/// Whether any of the segments that segment_of(k, from, to) gives for k < count is free, glass apart; it returns false
+/// where there is none.
+template <class SegmentOf>
+bool any_visible(const RayScene& rays, std::uint32_t count, const SegmentOf& segment_of) {
+  for (std::uint32_t first = 0; first < count; first += 16) {
+    SegmentPacket packet;
+    unsigned active = 0;
+    for (std::uint32_t lane = 0; lane < 16 && first + lane < count; ++lane) {
+      Vec3 from, to;
+      if (!segment_of(first + lane, from, to)) continue;
+      packet.set(static_cast<int>(lane), from, to);
+      active |= 1u << lane;
+    }
+    if (active && rays.visible16(packet, static_cast<std::uint16_t>(active))) return true;
+  }
+  return false;
+}
+
+}  // namespace clerestory

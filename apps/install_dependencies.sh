@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what building and testing Clerestory needs, from the packages of Debian 12 (or a later relative).
+# Installs what building and testing Clerestory needs, from the packages of Debian 12 (or a later relative), and the
+# packages that are named as arguments.
 # Packages that are there already are left alone; with all of them there, neither root nor a network is needed.
 set -euo pipefail
 
@@ -12,6 +13,7 @@ packages=(
   libopenimageio-dev                      # sky images in
   libcli11-dev                            # the command line
   libgtest-dev                            # tests
+  "$@"
 )
 
 missing=()

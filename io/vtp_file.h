@@ -33,6 +33,8 @@ void add_values(vtkFieldData* to, const char* name, std::size_t n, const Value& 
 /// Points of the scene's frame.
 void set_points(vtkPolyData* data, const std::vector<Vec3>& local, const Vec3& origin);
 
+/// XML with the data inline, zlib in base64. Equal data give equal bytes.
+///
 /// throws  InputError when the file cannot be written.
 void write_vtp(const std::filesystem::path& destination, vtkPolyData* data);
 

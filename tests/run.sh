@@ -1,9 +1,24 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything, and runs all tests. Ends with CTest's summary.
+# Installs what is missing, builds everything, and runs the tests. Ends with CTest's summary.
+#   --quick     without those that are labelled long
+#   --paraview  also opens results in Debian's ParaView, which it downloads once
+# Whatever else there is goes to ctest.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+to_ctest=()
+for argument in "$@"; do
+  case $argument in
+    --quick) to_ctest+=(--label-exclude long) ;;
+    --paraview)
+      to_ctest+=(--build-config paraview)
+      bash tests/paraview/get_paraview.sh
+      ;;
+    *) to_ctest+=("$argument") ;;
+  esac
+done
 
 bash apps/install_dependencies.sh
 cmake --preset release -DCLERESTORY_BUILD_TESTS=ON
 cmake --build --preset release
-ctest --preset release --parallel "$(nproc)" "$@"
+ctest --preset release --parallel "$(nproc)" --no-label-summary "${to_ctest[@]}"

@@ -19,6 +19,7 @@ Standard library only.
 """
 import argparse
 import array
+import base64
 import json
 import math
 import re
@@ -40,51 +41,40 @@ TYPES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B
 
 
 class Vtp:
-    """Arrays of an XML PolyData file with appended raw data, zlib blocks or none."""
+    """Arrays of an XML PolyData file with inline data in base64, zlib blocks."""
 
     def __init__(self, path):
-        with open(path, "rb") as file:
-            self.data = file.read()
-        mark = self.data.index(b"<AppendedData")
-        header = self.data[:mark].decode()
-        self.begin = self.data.index(b"_", mark) + 1
-        self.word = "Q" if 'header_type="UInt64"' in header else "I"
-        self.compressed = "compressor=" in header
-        self.at = {}
+        with open(path) as file:
+            text = file.read()
+        self.word = "Q" if 'header_type="UInt64"' in text else "I"
+        self.arrays = {}
         section = ""
-        for tag in re.finditer(r"<(\w+)([^>]*)>", header):
-            name, text = tag.group(1), tag.group(2)
+        for name, rest, data in re.findall(r"<(\w+)([^>]*)>\s*([^<\s]*)", text):
             if name in ("FieldData", "PointData", "CellData", "Points", "Verts", "Lines", "Strips", "Polys"):
                 section = name
             elif name == "DataArray":
-                a = dict(re.findall(r'(\w+)="([^"]*)"', text))
-                self.at[section, a.get("Name", "Points")] = (TYPES.get(a["type"]), int(a["offset"]),
-                                                             int(a.get("NumberOfComponents", 1)))
+                a = dict(re.findall(r'(\w+)="([^"]*)"', rest))
+                self.arrays[section, a.get("Name", "Points")] = TYPES.get(a["type"]), data
 
-    def words(self, at, count):
-        return struct.unpack_from("<%d%s" % (count, self.word), self.data, at)
+    def length(self, words):
+        return 4 * -(-words * struct.calcsize(self.word) // 3)
+
+    def words(self, data, count):
+        return struct.unpack("<%d%s" % (count, self.word), base64.b64decode(data[:self.length(count)]))
 
     def get(self, section, name):
-        kind, offset, _ = self.at[section, name]
-        at, size = self.begin + offset, struct.calcsize(self.word)
-        if not self.compressed:
-            (length,) = self.words(at, 1)
-            raw = self.data[at + size:at + size + length]
-        else:
-            (blocks,) = self.words(at, 1)
-            lengths = self.words(at + 3 * size, blocks) if blocks else ()
-            at += (3 + blocks) * size
-            parts = []
-            for length in lengths:
-                parts.append(zlib.decompress(self.data[at:at + length]))
-                at += length
-            raw = b"".join(parts)
-        result = array.array(kind)
-        result.frombytes(raw)
+        kind, data = self.arrays[section, name]
+        # Two texts in base64: header (blocks, their size, that of the last, each one's size when packed), packed blocks.
+        blocks = self.words(data, 3)[0]
+        header = self.words(data, 3 + blocks)
+        packed, at, result = base64.b64decode(data[self.length(3 + blocks):]), 0, array.array(kind)
+        for size in header[3:]:
+            result.frombytes(zlib.decompress(packed[at:at + size]))
+            at += size
         return result
 
     def points(self):
-        return self.get("Points", next(name for section, name in self.at if section == "Points"))
+        return self.get("Points", next(name for section, name in self.arrays if section == "Points"))
 
 
 class Field:

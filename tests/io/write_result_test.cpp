@@ -1,5 +1,6 @@
 #include "io/write_result.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -118,6 +119,17 @@ TEST(WriteResult, NoTimesGoIntoTheFileSoEqualRunsGiveEqualBytes) {
   s.report.peak_memory_bytes = 12345;
   write_result(folder / "b.vtp", s.patches, s.lightmap, s.solution, {}, s.report);
   EXPECT_EQ(read_text(folder / "a.vtp"), read_text(folder / "b.vtp"));
+}
+
+TEST(WriteResult, EveryByteIsPlainTextAndSoEveryXmlParserReadsTheFile) {
+  const TempFolder folder;
+  Sheet s(3);
+  s.patches.surfaces = {"B\xc3\xbcro <1> & \"2\""};
+  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, 1790.0, s.report);
+  const std::string text = read_text(folder / "a.vtp");
+  EXPECT_TRUE(std::ranges::all_of(text, [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); }));
+  EXPECT_EQ(text.find("AppendedData"), std::string::npos) << "ParaView of Debian 12 refuses it";
+  EXPECT_EQ(read_result(folder / "a.vtp").texts.at("surface_names"), s.patches.surfaces);
 }
 
 TEST(WriteResult, ANumberThatIsNoneIsRefusedAndTheOldFileStays) {

@@ -24,19 +24,8 @@ struct LinkOptions {
   std::uint64_t seed = 1;
 };
 
-/// Two estimators for the weight of p <- q, combined by the power heuristic (Veach & Guibas 1995): R cosine rays that
-/// leave points all over p, and L pairs of a point of p with one of a bright source, chosen by light.lamps. A ray of
-/// either kind that ends on a bright patch counts
-///   w = c own / (own^2 + other^2),   c = cos / pi, own and other: R c and L density, or the other way round;
-/// one that ends elsewhere w = 1 / R. The bright patches' weights so have the noise of pairs where these are better.
-/// What they leave of all directions is shared by the rest of the bundle: patches, sky, glass. So a row sums to 1 less
-/// what escapes or is lost, exactly.
-///
-/// Hits, sorted in the order of the tree, are cut at its nodes from the root: a node takes all under it when
-///   (sum of w) * (standard deviation of B over its area) <= uniform * E_p
-/// and |sum of w (B of the node - B of the leaf that was hit)|, added up over the nodes taken so far, stays below a
-/// tenth of that: what is hidden of a node is darker than what is seen, and without the second condition a row loses 2
-/// %.
+/// For each receiver: rays (receiver_rays.h) find what arrives, weighted by two estimators and made to sum to one
+/// (arrivals.h), which is cut at the nodes of the tree into links, within uniform * E_p (cut_row.h).
 ///
 /// light  made with what the explicit sources send more than their surroundings; its problem is that of the leaves.
 /// B      N x channels, radiosity known so far, or what it is above a level; empty: nothing is merged.

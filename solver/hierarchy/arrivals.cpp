@@ -1,0 +1,161 @@
+#include "solver/hierarchy/arrivals.h"
+
+#include <algorithm>
+#include <numbers>
+#include <span>
+
+#include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
+#include "solver/model/units.h"
+#include "solver/openings/openings.h"
+#include "solver/sampling/two_estimators.h"
+#include "solver/visibility/shadow_rays.h"
+
+namespace clerestory {
+namespace {
+
+/// Sums over a bundle, by member, of what each gets of its rays.
+struct BundleSums {
+  std::array<double, kMostMembers> all{}, arrives{}, escapes{};
+  std::array<Spectrum, kMostMembers> sky{};
+};
+
+/// Whether direct light has looked for this ray's sky through an opening.
+bool is_looked_for(const Surroundings& around, std::uint32_t patch, const Ray& ray, const Hit& hit) {
+  const auto openings = around.direct.openings.of(patch);
+  return !openings.empty() && first_way_out(around.light.problem.lights.openings, openings, ray.origin, ray.direction,
+                                            hit.first) != kNoOpening;
+}
+
+/// Fills one receiver's arrivals.
+class Collector {
+ public:
+  Collector(const ReceiverArea& area, const Surroundings& around, int rays, int pairs, Arrivals& out)
+      : area_(area), around_(around), R_(rays), L_(pairs), out_(out) {}
+
+  void take_bundle(const Bundle& bundle) {
+    const std::size_t n = area_.members().size();
+    std::array<double, kMostMembers> share{1.0};  // a single member gets all
+    BundleSums sums;
+    for (std::size_t k = 0; k < bundle.rays.size(); ++k) {
+      const Ray& ray = bundle.rays[k];
+      const Hit& hit = bundle.hits[k];
+      const auto shares = std::span(share).first(n);
+      if (n > 1) area_.find_shares(ray.direction, shares);
+      if (hit.escaped())
+        take_sky(ray, hit, shares, sums);
+      else if (hit.patch.valid())
+        take_patch(ray, hit, bundle.from[k]->normal, shares, sums);
+      for (std::size_t m = 0; m < n; ++m) sums.all[m] += shares[m];
+    }
+    note_view(sums);
+  }
+
+  void take_pairs(std::uint64_t key) {
+    const RayScene& rays = around_.light.problem.rays;
+    struct Load {
+      PatchId source;
+      double weight;
+      Vec3 direction;
+    };
+    auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
+      add(load.source, load.weight, luminous_mean(rays.glass_transmittance(from, to)), true, load.direction);
+    });
+    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(L_); ++k) {
+      const BrightPair pair = bright_pair(area_, around_.light, k, key);
+      if (!pair.valid()) continue;
+      const Vec3 direction = normalized(pair.to - pair.from);
+      const double c = std::max(0.0, dot(pair.normal, direction)) / std::numbers::pi;
+      const double weight = c * power_heuristic_over_density(L_ * pair.sample.density, R_ * c);
+      if (weight > 0) shadows.send(pair.from, pair.to, {pair.sample.patch, weight, direction});
+    }
+    shadows.trace();
+  }
+
+ private:
+  void take_sky(const Ray& ray, const Hit& hit, std::span<const double> share, BundleSums& sums) const {
+    const double passes = luminous_mean(hit.transmittance);
+    const Spectrum sky = around_.light.sky(hit.direction(ray)) * std::numbers::pi * hit.transmittance;
+    for (std::size_t m = 0; m < share.size(); ++m) {
+      sums.escapes[m] += share[m] * passes;
+      if (!is_looked_for(around_, area_.members()[m].patch, ray, hit)) sums.sky[m] += sky * share[m];
+    }
+  }
+
+  void take_patch(const Ray& ray, const Hit& hit, const Vec3& normal, std::span<const double> share, BundleSums& sums) {
+    const LightSampler& lamps = around_.light.lamps;
+    const double passes = luminous_mean(hit.transmittance);
+    if (L_ > 0 && !hit.reflected && lamps.is_explicit(hit.patch)) {
+      const double c = dot(normal, ray.direction) / std::numbers::pi;
+      const double density = lamps.density(hit, ray.origin, normal, ray.direction, true);
+      out_.bright.hits += 1.0 / R_;
+      add(hit.patch, c * power_heuristic_over_density(R_ * c, L_ * density), passes, true, ray.direction);
+    } else {
+      add(hit.patch, 1.0 / R_, passes, false, ray.direction);
+      for (std::size_t m = 0; m < share.size(); ++m) sums.arrives[m] += share[m] * passes;
+    }
+  }
+
+  /// weight  before glass, which lets the share `passes` through.
+  void add(PatchId source, double weight, double passes, bool bright, const Vec3& d) {
+    if (bright) out_.bright.seen += weight, out_.bright.arrives += weight * passes;
+    weight *= passes;
+    const std::uint16_t part = area_.hands_down() ? part_of_sphere(d) : std::uint16_t{0};
+    out_.list.push_back({around_.tree.node_of_patch[source], static_cast<float>(weight), part, bright});
+    if (!area_.hands_down()) return;
+    std::array<double, kMostMembers> share;
+    const auto shares = std::span(share).first(area_.members().size());
+    area_.find_shares(d, shares);
+    out_.shares.add(part, weight, shares);
+  }
+
+  void note_view(const BundleSums& sums) {
+    const auto part = [](double sum, double all) { return static_cast<float>(all > 0 ? sum / all : 0); };
+    out_.E_sky = 0;
+    for (std::size_t m = 0; m < area_.members().size(); ++m) {
+      const Spectrum E_sky = sums.sky[m] / R_;
+      out_.view[m] = {E_sky, part(sums.arrives[m], sums.all[m]), part(sums.escapes[m], sums.all[m])};
+      out_.E_sky += area_.members()[m].area / area_.area() * luminous_mean(E_sky);
+    }
+  }
+
+  const ReceiverArea& area_;
+  const Surroundings& around_;
+  const int R_, L_;
+  Arrivals& out_;
+};
+
+void clear(Arrivals& arrivals, bool hands_down) {
+  arrivals.list.clear();
+  arrivals.bright = {};
+  if (hands_down) arrivals.shares.clear();
+}
+
+/// All directions sum to 1. What the bright sources leave, by their better estimate, is shared by the rest of the
+/// bundle: other patches, what escapes, what is lost.
+void make_sum_one(std::size_t members, Arrivals& arrivals) {
+  const BrightShares& bright = arrivals.bright;
+  const bool rest = bright.hits < 1 && bright.seen < 1;
+  const double gain = rest ? (1 - bright.seen) / (1 - bright.hits) : 0;
+  const double gain_bright = rest ? 1 : 1 / bright.seen;
+  for (Arrival& a : arrivals.list) a.weight = static_cast<float>(a.weight * (a.bright ? gain_bright : gain));
+  for (MemberView& v : std::span(arrivals.view).first(members)) {
+    v.E_sky *= gain;
+    v.escapes = static_cast<float>(v.escapes * gain);
+    v.arrives = static_cast<float>(v.arrives * gain + bright.arrives * gain_bright);
+  }
+  arrivals.E_sky *= gain;
+}
+
+}  // namespace
+
+void find_arrivals(const ReceiverArea& area, const Bundle& bundle, const Surroundings& around, int pairs,
+                   std::uint64_t key, Arrivals& out) {
+  clear(out, area.hands_down());
+  Collector collector(area, around, static_cast<int>(bundle.rays.size()), pairs, out);
+  collector.take_bundle(bundle);
+  if (pairs > 0) collector.take_pairs(mix_bits(key + kLampPairs));
+  make_sum_one(area.members().size(), out);
+}
+
+}  // namespace clerestory

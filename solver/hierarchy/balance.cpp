@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "solver/hierarchy/gather_links.h"
-#include "solver/model/units.h"
+#include "solver/spaces/energy.h"
 
 namespace clerestory {
 namespace {
@@ -106,10 +106,8 @@ Solution balance(const PatchSet& patches, const ElementTree& tree, const Transpo
   for (std::size_t i = 0; i < n; ++i) {
     const Spectrum radiosity = patches.M[i] + patches.scattered(s.E, i);
     s.B.set(i, radiosity);
-    const double arrives = double{transport.arrives[i]}, escapes = double{transport.escapes[i]};
-    s.energy.absorbed += patches.area[i] * luminous_mean((Spectrum(1.0) - patches.albedo(i)) * s.E[i] +
-                                                         radiosity * std::max(0.0, 1 - arrives - escapes));
-    s.energy.escaped += patches.area[i] * luminous_mean(radiosity) * escapes;
+    const Losses on_its_way = losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
+    s.energy += where_light_ends(patches, i, s.E[i], radiosity, on_its_way);
   }
   return s;
 }

@@ -7,7 +7,6 @@
 
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
-#include "solver/model/units.h"
 
 namespace clerestory {
 namespace {
@@ -132,6 +131,14 @@ double FullMatrixSystem::relative_residual() const {
   return worst;
 }
 
+Losses FullMatrixSystem::losses_of(std::size_t i) const {
+  // What a half-filled row does not place has not escaped: it is left over as imbalance.
+  if (!F_.row_filled[i]) return {};
+  // Below 0 where an open row sums to more than 1: the light it makes.
+  const double unplaced = 1 - F_.row_sum[i] * F_.row_gain(i);
+  return {Spectrum(unplaced * F_.escapes[i]), Spectrum(unplaced * (1 - F_.escapes[i]))};
+}
+
 Solution FullMatrixSystem::finish(std::string method) const {
   Solution solution;
   solution.method = std::move(method);
@@ -141,24 +148,10 @@ Solution FullMatrixSystem::finish(std::string method) const {
     for (int k = 0; k < channels_; ++k) solution.E.at(i, k) = E_direct_.at(i, k) + FB[static_cast<std::size_t>(k)][i];
   for (std::size_t i = 0; i < n_; ++i) {
     const Spectrum B_i = patches_.M[i] + patches_.scattered(solution.E, i);
-    Spectrum emitted, absorbed, escaped;
-    for (int k = 0; k < channels_; ++k) {
-      const auto c = static_cast<std::size_t>(k);
-      const double radiosity = B_i[k];
-      solution.B.at(i, k) = radiosity;
-      emitted[k] = area[i] * (patches_.M.at(i, k) + E_direct_.at(i, k));
-      absorbed[k] = area[i] * (1 - albedo_[c][i]) * solution.E.at(i, k);
-      // What a half-filled row does not place has not escaped: it is left over as imbalance.
-      if (!F_.row_filled[i]) continue;
-      const double lost = area[i] * radiosity * (1 - F_.row_sum[i] * F_.row_gain(i));
-      escaped[k] = lost * F_.escapes[i];
-      absorbed[k] += lost - escaped[k];
-    }
-    const auto flux = [&](const Spectrum& s) { return channels_ == 1 ? s[0] : luminous_mean(s); };
-    solution.energy.emitted += flux(emitted);
-    solution.energy.absorbed += flux(absorbed);
-    solution.energy.escaped += flux(escaped);
+    solution.B.set(i, B_i);
+    solution.energy += where_light_ends(patches_, i, solution.E[i], B_i, losses_of(i));
   }
+  solution.energy.emitted = total_flux(patches_, patches_.M) + total_flux(patches_, E_direct_);
   solution.rays = F_.rays;
   return solution;
 }

@@ -12,6 +12,7 @@
 #include "solver/model/monitor.h"
 #include "solver/model/patch_set.h"
 #include "solver/model/solution.h"
+#include "solver/spaces/energy.h"
 
 namespace clerestory {
 
@@ -77,6 +78,7 @@ class FullMatrixSystem {
   std::vector<double> area;
 
  private:
+  Losses losses_of(std::size_t i) const;
   Solution finish(std::string method) const;
 
   const PatchSet& patches_;

@@ -17,6 +17,7 @@
 #include "solver/methods/progressive.h"
 #include "solver/model/units.h"
 #include "solver/spaces/closure.h"
+#include "solver/spaces/energy.h"
 
 namespace clerestory {
 namespace {
@@ -170,21 +171,18 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
 
   out.small_lights = direct.E;
   Field E_direct = direct.E;
-  double from_sky = 0, glowing = 0;
   const bool looks_through = quality.direct.sky_rays == 0 && !direct.E_openings.value.empty();
   for (std::size_t i = 0; i < n; ++i) {
     const Spectrum sky = looks_through ? transport.E_sky[i] + direct.E_openings[i] : transport.E_sky[i];
     E_direct.add(i, sky);
-    from_sky += leaves.area[i] * luminous_mean(sky);
-    glowing += leaves.area[i] * luminous_mean(leaves.M[i]);
   }
   monitor.report("gather", 0);
   Solution& s = out.solution;
   s = balance(leaves, tree, transport, E_direct, std::move(guess), quality.residual, monitor);
   s.method = "hierarchical";
-  s.energy.emitted += glowing + from_sky + direct.energy.emitted;
-  s.energy.absorbed += direct.energy.absorbed;
-  s.energy.escaped += direct.energy.escaped;
+  s.energy.emitted += total_flux(leaves, leaves.M) + total_flux(leaves, transport.E_sky);
+  if (looks_through) s.energy.emitted += total_flux(leaves, direct.E_openings);
+  s.energy += direct.energy;
   s.rays = direct.rays + transport.rays;
   s.clusters = tree.clusters;
   s.links = transport.link_count();

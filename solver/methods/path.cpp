@@ -4,9 +4,9 @@
 
 #include "solver/model/parallel.h"
 #include "solver/model/streams.h"
-#include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/spaces/energy.h"
 
 namespace clerestory {
 
@@ -51,17 +51,14 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
 
   solution.E = solution.B = solution.std_error = Field(n, patches.channels);
   solution.energy = direct.energy;
+  solution.energy.emitted += total_flux(patches, patches.M);
   solution.rays = direct.rays + closure.rays;
   for (std::size_t i = 0; i < n; ++i) solution.E.set(i, sums[i].mean());
   for (std::size_t i = 0; i < n; ++i) {
-    const Spectrum E = solution.E[i], B = patches.M[i] + patches.scattered(solution.E, i);
-    const Spectrum lost_in_glass = Spectrum(1.0) - closure.arrives[i] - closure.escapes[i];
+    const Spectrum B = patches.M[i] + patches.scattered(solution.E, i);
     solution.B.set(i, B);
     solution.std_error.set(i, sums[i].std_error());
-    solution.energy.emitted += patches.area[i] * luminous_mean(patches.M[i]);
-    solution.energy.absorbed +=
-        patches.area[i] * luminous_mean((Spectrum(1.0) - patches.albedo(i)) * E + lost_in_glass * B);
-    solution.energy.escaped += patches.area[i] * luminous_mean(closure.escapes[i] * B);
+    solution.energy += where_light_ends(patches, i, solution.E[i], B, losses(closure, i));
     solution.iterations += static_cast<long>(sums[i].count);
     solution.rays += rays[i];
   }

@@ -9,6 +9,7 @@
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/spaces/energy.h"
 
 namespace clerestory {
 namespace {
@@ -31,7 +32,7 @@ double magnitude(const Spectrum& dB) { return luminous_mean({std::abs(dB[0]), st
 struct Unshot {
   const PatchSet& patches;
   Field E, dB;
-  double escaped = 0, absorbed = 0;  ///< [W], luminous mean; absorbed by glass and sides that take no part
+  EnergyBalance on_the_way{};  ///< what has ended between patches, as rays and ambient told; nothing is emitted here
 
   double flux_at(std::size_t i) const { return patches.area[i] * magnitude(dB[i]); }
   double flux() const {
@@ -70,8 +71,7 @@ void shoot_ambient(Unshot& light, const Closure& closure, const std::vector<Spec
     const Spectrum e_i = e[closure.space[i]];
     light.dB.set(i, unshot_after_ambient(light, closure, e, i));
     light.E.add(i, closure.arrives[i] * e_i);
-    light.escaped += p.area[i] * luminous_mean(closure.escapes[i] * e_i);
-    light.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - closure.arrives[i] - closure.escapes[i]) * e_i);
+    light.on_the_way += where_light_ends(p, i, Spectrum(), e_i, losses(closure, i));
   }
 }
 
@@ -122,18 +122,18 @@ void trace(const Problem& problem, const Piece& piece, std::uint64_t seed, std::
 
 void deposit(Unshot& light, const Piece& piece, std::span<const Landing> landings, std::span<const Spectrum> passed) {
   const PatchSet& p = light.patches;
-  const double flux = luminous_mean(piece.flux);
+  const double sent = luminous_mean(piece.flux);
   for (std::size_t k = 0; k < landings.size(); ++k) {
     const auto [q, escaped] = landings[k];
     Spectrum arriving = piece.flux;
     if (!passed.empty()) {
       arriving *= passed[k];
-      light.absorbed += flux - luminous_mean(arriving);
+      light.on_the_way.absorbed += sent - luminous_mean(arriving);
     }
     if (escaped) {
-      light.escaped += luminous_mean(arriving);
+      light.on_the_way.escaped += luminous_mean(arriving);
     } else if (!q.valid()) {
-      light.absorbed += luminous_mean(arriving);
+      light.on_the_way.absorbed += luminous_mean(arriving);
     } else {
       const double per_area = 1 / p.area[q];
       for (int c = 0; c < p.channels; ++c) {
@@ -154,16 +154,12 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
   const PatchSet& p = problem.patches;
   const std::size_t n = p.patch_count();
   Unshot light{p, direct.E, Field(n, p.channels)};
-  double glow = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    light.dB.set(i, p.M[i] + p.scattered(direct.E, i));
-    glow += p.area[i] * luminous_mean(p.M[i]);
-  }
+  for (std::size_t i = 0; i < n; ++i) light.dB.set(i, p.M[i] + p.scattered(direct.E, i));
 
   Solution solution;
   solution.method = "progressive";
   solution.energy = direct.energy;
-  solution.energy.emitted += glow;
+  solution.energy.emitted += total_flux(p, p.M);
   const double emitted = solution.energy.emitted;
   const double flux_per_ray = light.flux() / (options.rays_per_patch * static_cast<double>(n));
   std::vector<std::uint32_t> next_ray(n, 0);
@@ -236,12 +232,15 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
   shoot_ambient(light, closure, ambient_radiosity(light, closure));
   solution.E = light.E;
   solution.B = Field(n, p.channels);
+  // What patches sent and no patch received was counted ray by ray, which balances exactly; the closure's shares would
+  // only estimate it.
+  constexpr Losses kCounted{};
   for (std::size_t i = 0; i < n; ++i) {
-    solution.energy.absorbed += p.area[i] * luminous_mean((Spectrum(1.0) - p.albedo(i)) * light.E[i]);
-    solution.B.set(i, p.M[i] + p.scattered(light.E, i));
+    const Spectrum B = p.M[i] + p.scattered(light.E, i);
+    solution.B.set(i, B);
+    solution.energy += where_light_ends(p, i, light.E[i], B, kCounted);
   }
-  solution.energy.absorbed += light.absorbed;
-  solution.energy.escaped += light.escaped;
+  solution.energy += light.on_the_way;
   solution.residual = residual;
   solution.flux_per_ray = flux_per_ray;
   solution.rays += direct.rays + closure.rays;

@@ -16,6 +16,11 @@ struct EnergyBalance {
   double escaped = 0;   ///< left the scene
   /// (emitted - absorbed - escaped) / emitted [1], never corrected away.
   double imbalance() const { return emitted > 0 ? (emitted - absorbed - escaped) / emitted : 0; }
+
+  EnergyBalance& operator+=(const EnergyBalance& b) {
+    emitted += b.emitted, absorbed += b.absorbed, escaped += b.escaped;
+    return *this;
+  }
 };
 
 enum class StopReason { converged, time_limit, interrupted, iteration_limit };

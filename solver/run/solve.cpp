@@ -16,11 +16,11 @@
 #include "solver/model/error.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
-#include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
 #include "solver/run/memory_estimate.h"
 #include "solver/spaces/closure.h"
+#include "solver/spaces/energy.h"
 
 namespace clerestory {
 namespace {
@@ -67,11 +67,8 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
 
 /// The matrix methods know light as it arrives; a luminaire's flux that misses the patches belongs to the balance too.
 void count_luminaires(EnergyBalance& energy, const PatchSet& patches, const DirectLight& direct) {
-  double arrived = 0;
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) arrived += patches.area[i] * luminous_mean(direct.E[i]);
-  energy.emitted += direct.energy.emitted - arrived;
-  energy.escaped += direct.energy.escaped;
-  energy.absorbed += direct.energy.absorbed;
+  energy += direct.energy;
+  energy.emitted -= total_flux(patches, direct.E);  // what arrived of it is in there already
 }
 
 FormFactorOptions matrix_options(const PatchSet& patches, const SolveOptions& options) {

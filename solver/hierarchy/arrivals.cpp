@@ -83,11 +83,11 @@ class Collector {
   }
 
   void take_patch(const Ray& ray, const Hit& hit, const Vec3& normal, std::span<const double> share, BundleSums& sums) {
-    const LightSampler& lamps = around_.light.lamps;
+    const LightSampler& luminaires = around_.light.sampler;
     const double passes = luminous_mean(hit.transmittance);
-    if (L_ > 0 && !hit.reflected && lamps.is_explicit(hit.patch)) {
+    if (L_ > 0 && !hit.reflected && luminaires.is_bright(hit.patch)) {
       const double c = dot(normal, ray.direction) / std::numbers::pi;
-      const double density = lamps.density(hit, ray.origin, normal, ray.direction, true);
+      const double density = luminaires.density(hit, ray.origin, normal, ray.direction, true);
       out_.bright.hits += 1.0 / R_;
       add(hit.patch, c * power_heuristic_over_density(R_ * c, L_ * density), passes, true, ray.direction);
     } else {
@@ -154,7 +154,7 @@ void find_arrivals(const ReceiverArea& area, const Bundle& bundle, const Surroun
   clear(out, area.hands_down());
   Collector collector(area, around, static_cast<int>(bundle.rays.size()), pairs, out);
   collector.take_bundle(bundle);
-  if (pairs > 0) collector.take_pairs(mix_bits(key + kLampPairs));
+  if (pairs > 0) collector.take_pairs(mix_bits(key + kBrightPairs));
   make_sum_one(area.members().size(), out);
 }
 

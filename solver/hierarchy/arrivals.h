@@ -54,7 +54,7 @@ struct Surroundings {
 };
 
 /// Two estimators for the weight of p <- q, combined by the power heuristic (Veach & Guibas 1995): R cosine rays that
-/// leave points all over p, and L pairs of a point of p with one of a bright source, chosen by light.lamps. A ray of
+/// leave points all over p, and L pairs of a point of p with one of a bright source, chosen by light.sampler. A ray of
 /// either kind that ends on a bright patch counts
 ///   w = c own / (own^2 + other^2),   c = cos / pi, own and other: R c and L density, or the other way round;
 /// one that ends elsewhere w = 1 / R. The bright patches' weights so have the noise of pairs where these are better.

@@ -32,15 +32,15 @@ BrightPair bright_pair(const ReceiverArea& area, const Illumination& light, std:
   auto v = sobol4(number, mix_bits(key));
   const ReceiverArea::Member& member = area.pick(v[1]);
   const Vec3 from = point_on_triangle(member.corners, u[0], u[1]) + member.normal * light.problem.rays.lift();
-  const LightSample s = light.lamps.sample(from, member.normal, u[2], u[3], v[0], true);
+  const LightSample s = light.sampler.sample(from, member.normal, u[2], u[3], v[0], true);
   return {from, s.density > 0 ? s.end : from, member.normal, s};
 }
 
 int pairs_worth_sending(const ReceiverArea& area, const Illumination& light, int wanted, std::uint64_t key) {
-  if (!light.lamps.has_emitters() || wanted <= 0) return 0;
+  if (!light.sampler.has_bright_patches() || wanted <= 0) return 0;
   if (light.sky.dark()) return wanted;
   const bool seen = any_visible(light.problem.rays, kPilotPairs, [&](std::uint32_t k, Vec3& from, Vec3& to) {
-    const BrightPair pair = bright_pair(area, light, k, mix_bits(key + kLampPairPilot));
+    const BrightPair pair = bright_pair(area, light, k, mix_bits(key + kBrightPairPilot));
     from = pair.from, to = pair.to;
     return pair.valid();
   });

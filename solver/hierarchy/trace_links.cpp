@@ -106,7 +106,7 @@ void link(const Receiver& receiver, const Given& given, Workspace& work, LinkBlo
   const Illumination& light = given.around.light;
   work.area.look_at(receiver, given.around.tree, light.problem.patches);
   const std::uint64_t key = key_of(work.area, given.options);
-  const int pairs = pairs_worth_sending(work.area, light, given.options.lamp_rays, key);
+  const int pairs = pairs_worth_sending(work.area, light, given.options.bright_rays, key);
   send_bundle(work.area, light.problem, given.net, key, work.bundle);
   find_arrivals(work.area, work.bundle, given.around, pairs, key, work.arrivals);
   note_neighbours(work.bundle.hits, neighbours);
@@ -172,7 +172,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   }
   transport.complete = !stopped;
   if (stopped) return transport;
-  const int pairs = light.lamps.has_emitters() ? options.lamp_rays : 0;
+  const int pairs = light.sampler.has_bright_patches() ? options.bright_rays : 0;
   transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs);
   find_spaces(transport, patches, tree, receivers, neighbours);
   return transport;

@@ -9,7 +9,7 @@
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
-#include "solver/openings/rims.h"
+#include "solver/openings/find_gaps.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {

@@ -17,7 +17,7 @@ struct Effort {
   double triangles;           ///< the other methods
 
   // Hierarchical.
-  int bundle_rays, lamp_rays;  ///< from each receiver, see LinkOptions
+  int bundle_rays, bright_rays;  ///< from each receiver, see LinkOptions
   double element_tolerance;    ///< of the irradiance within an element [1]
   double vertex_tolerance;     ///< of the irradiance between vertices [1]
   double shortest_edge;        ///< / longest edge: below it nothing is halved [1]

@@ -34,7 +34,8 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
       out.push_back(std::string(kMaterialKindNames[kind]) + ": the scene has none");
   if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
   if (s.lit_sides.luminaire_interiors)
-    out.push_back(counted(s.lit_sides.luminaire_interiors, "emitting side") + " that shine on nothing but their own luminaire");
+    out.push_back(counted(s.lit_sides.luminaire_interiors, "emitting side") +
+                  " that shine on nothing but their own luminaire");
   return out;
 }
 

@@ -326,7 +326,8 @@ class GltfReader {
     const Vec3 x = normalized(side - back * dot(side, back));
     if (!(length(back) > 0 && length(x) > 0)) file_.refuse(where + ": its light has no direction");
     WebLuminaire luminaire{web, {x, cross(back, x), back}, {}};
-    if (web->type == WebType::A) luminaire.axes = {-back, luminaire.axes.y, x};  // the beam is x then, and V goes up to z
+    if (web->type == WebType::A)
+      luminaire.axes = {-back, luminaire.axes.y, x};  // the beam is x then, and V goes up to z
     luminaire.scale = colour * (multiplier / kWhiteEfficacy);
     model_.lights.luminaires.push_back({text_member(file_, node, "name", where), place.b, {}, std::move(luminaire)});
   }

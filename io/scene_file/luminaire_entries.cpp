@@ -15,8 +15,9 @@ namespace clerestory {
 namespace {
 
 constexpr std::size_t kMostLuminaires = 1'000'000;
-constexpr Range kFlux{
-    .low = 0, .high = kMostLight, .advice = "a luminaire emits no less than nothing and no more than a result can hold"};
+constexpr Range kFlux{.low = 0,
+                      .high = kMostLight,
+                      .advice = "a luminaire emits no less than nothing and no more than a result can hold"};
 
 class LuminaireReader {
  public:
@@ -71,7 +72,8 @@ class LuminaireReader {
 
   Spectrum read_point_power(const JsonObject& object) {
     const auto power = read_flux(object);
-    if (!power) throw InputError(text(object.place("luminous_flux"), " is missing; a luminaire needs its flux in lumens"));
+    if (!power)
+      throw InputError(text(object.place("luminous_flux"), " is missing; a luminaire needs its flux in lumens"));
     if (object.unit_vector("aim") || object.number("rotation")) {
       warnings_.push_back(
           text(object.where(), ": aim and rotation are not used: a point shines the same in all directions"));

@@ -87,7 +87,9 @@ Vec3 light_position(const Vec3& p, const std::string& light, const std::string& 
 }
 
 void turn(PointLuminaire&, const Affine&) {}
-void turn(SpotLuminaire& luminaire, const Affine& place) { luminaire.direction = normalized(place.direction(luminaire.direction)); }
+void turn(SpotLuminaire& luminaire, const Affine& place) {
+  luminaire.direction = normalized(place.direction(luminaire.direction));
+}
 void turn(WebLuminaire& luminaire, const Affine& place) {
   // A mirrored transform does not mirror the lamp: its third axis follows from the others.
   luminaire.axes.z = normalized(place.direction(luminaire.axes.z));

@@ -18,8 +18,9 @@ namespace clerestory {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kWorthLooking = 0.1;  ///< share of the bright patches' light in those that are not in bright areas looked at
-constexpr double kLeastOfBest = 0.2;   ///< of the light of the best bright area, else it has no rays of its own
+constexpr double kWorthLooking =
+    0.1;  ///< share of the bright patches' light in those that are not in bright areas looked at
+constexpr double kLeastOfBest = 0.2;  ///< of the light of the best bright area, else it has no rays of its own
 constexpr std::size_t kMostOpenings = 8, kMostBrightAreas = 4;  ///< that a point looks at by rays of their own
 /// Owners of rays: openings and, from kPanels on, bright areas, by number.
 constexpr std::uint32_t kBrightAreas = 0x80000000, kNobody = kNoOpening;
@@ -48,8 +49,8 @@ class View {
       } else if (hit.patch.valid()) {
         Spectrum back = light_.sampler.glow()[hit.patch];
         if (owner == kNobody && bright_rays_ > 0)
-          back *=
-              balance_heuristic(density[k], bright_rays_ * light_.sampler.density(hit, p_, frame_.n, directions[k], true));
+          back *= balance_heuristic(density[k],
+                                    bright_rays_ * light_.sampler.density(hit, p_, frame_.n, directions[k], true));
         values[k] = back * hit.transmittance;
       }
     }
@@ -61,7 +62,8 @@ class View {
         first_way_out(light_.problem.lights.openings, plan_.openings, p_, direction, distance);
     if (opening != kNoOpening || !patch.valid() || plan_.bright_areas.empty()) return opening;
     const std::uint32_t bright_area = light_.bright_areas.of(patch);
-    return std::ranges::find(plan_.bright_areas, bright_area) == plan_.bright_areas.end() ? kNobody : kBrightAreas + bright_area;
+    return std::ranges::find(plan_.bright_areas, bright_area) == plan_.bright_areas.end() ? kNobody
+                                                                                          : kBrightAreas + bright_area;
   }
 
  private:
@@ -78,7 +80,7 @@ int bright_rays(const Illumination& light, const GatherPattern& pattern, const G
 
 /// Whether any of a few rays to bright patches gets there: those outside of a room are none of its lamps.
 bool sees_bright_patches(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                unsigned long long& rays) {
+                         unsigned long long& rays) {
   if (!light.sampler.has_bright_patches()) return false;
   return any_visible(light.problem.rays, GatherPattern::kBrightPilots, [&](std::uint32_t k, Vec3& from, Vec3& to) {
     const auto& u = pattern.bright_pilots()[k];
@@ -332,8 +334,9 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   }
   double left = light.bright_areas.all_flux;
   for (const std::uint32_t k : plan.bright_areas) left -= light.bright_areas.flux[k];
-  plan.looks_for_bright_patches = (light.bright_areas.shape.empty() || left > kWorthLooking * light.bright_areas.all_flux) &&
-                         (light.sky.dark() || sees_bright_patches(light, p, n, pattern, rays));
+  plan.looks_for_bright_patches =
+      (light.bright_areas.shape.empty() || left > kWorthLooking * light.bright_areas.all_flux) &&
+      (light.sky.dark() || sees_bright_patches(light, p, n, pattern, rays));
   const Strata& bundle = pattern.bundle();
   const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
   const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;
@@ -349,7 +352,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 }
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                        const GatherPlan& plan, unsigned long long& rays) {
+                           const GatherPlan& plan, unsigned long long& rays) {
   const int to_bright_patches = bright_rays(light, pattern, plan);
   const Frame frame(n);
   const View view(light, p, frame, to_bright_patches, plan);
@@ -366,7 +369,8 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
   for (std::size_t k = 0; k < plan.openings.size(); ++k)
     look_at(light.problem.lights.openings[plan.openings[k]], plan.openings[k], plan.opening_plans[k]);
   for (std::size_t k = 0; k < plan.bright_areas.size(); ++k)
-    look_at(light.bright_areas.shape[plan.bright_areas[k]], kBrightAreas + plan.bright_areas[k], plan.bright_area_plans[k]);
+    look_at(light.bright_areas.shape[plan.bright_areas[k]], kBrightAreas + plan.bright_areas[k],
+            plan.bright_area_plans[k]);
 
   GatheredLight at{sum.E, Spectrum(0.0), std::sqrt(sum.variance)};
   if (to_bright_patches > 0) {
@@ -381,7 +385,7 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
 }
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                        unsigned long long& rays) {
+                           unsigned long long& rays) {
   return gather_point(light, p, n, pattern,
                       wants_plan(light, pattern) ? plan_gather(light, p, n, pattern, rays) : GatherPlan{}, rays);
 }

@@ -112,7 +112,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       const auto v = sobol4(static_cast<std::uint32_t>(k), place);
       for (std::size_t s = 0; s < kParts; ++s)
         value[s] = luminous_mean(light.sampler.delta_light(point_on_triangle(parts[s], v[0], v[1]) + lift, normal, 1,
-                                                          mix_bits(place + static_cast<std::uint64_t>(k))));
+                                                           mix_bits(place + static_cast<std::uint64_t>(k))));
       small.add(value);
     }
     rays += kPoints * kParts;

@@ -21,7 +21,7 @@ struct FieldOptions {
 /// P x channels, by point of the mesh [W/m2].
 struct VertexField {
   Field E;
-  Field delta_light;         ///< part of E: from luminaires without extent and suns
+  Field delta_light;              ///< part of E: from luminaires without extent and suns
   std::vector<double> std_error;  ///< P, standard error of E, luminous mean
   unsigned long long rays = 0;
   std::vector<bool> known;  ///< P, false: not gathered, E holds nothing
@@ -47,7 +47,7 @@ struct LeafError {
   std::uint32_t leaf;  ///< element of the mesh
   double off;          ///< how far the middle of an edge may lie off the straight line
   double E;            ///< irradiance there; at least the darkest that counts
-  double std_error;        ///< standard error at the vertices
+  double std_error;    ///< standard error at the vertices
 };
 /// Of each leaf whose vertices were gathered.
 std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& field);

@@ -72,7 +72,8 @@ class PatchSampler {
   /// by. wide: the light comes from all over an opening, which sixteen rays know to a few per cent only.
   template <class Light>
   Spectrum mean_of_choice(const Light& light, bool wide) const {
-    if (options_.edge_rays <= options_.shadow_rays) return look(key_, options_.shadow_rays, light).sum / options_.shadow_rays;
+    if (options_.edge_rays <= options_.shadow_rays)
+      return look(key_, options_.shadow_rays, light).sum / options_.shadow_rays;
     // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
     // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
     const Tally pilot = look(mix_bits(key_), options_.shadow_rays, light);
@@ -174,15 +175,16 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
                                      [](double x, const Over& luminaire) { return x < luminaire.gives; });
     return static_cast<std::size_t>(std::min(at, over.end() - 1) - over.begin());
   };
-  return E + patch.mean_of_choice(
-                 [&](const Vec3& p, double u, double v, const auto& pick) {
-                   const std::size_t k = chosen(pick());
-                   const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
-                   const PlacedLuminaire& luminaire = lights.luminaires[over[k].number];
-                   const Vec3 q = light_point(luminaire, p, u, v);
-                   return ShadowTry{q, open_irradiance(luminaire, q, p, patch.normal()) / probability, luminaire.mirror};
-                 },
-                 wide);
+  return E +
+         patch.mean_of_choice(
+             [&](const Vec3& p, double u, double v, const auto& pick) {
+               const std::size_t k = chosen(pick());
+               const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
+               const PlacedLuminaire& luminaire = lights.luminaires[over[k].number];
+               const Vec3 q = light_point(luminaire, p, u, v);
+               return ShadowTry{q, open_irradiance(luminaire, q, p, patch.normal()) / probability, luminaire.mirror};
+             },
+             wide);
 }
 
 Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, double far_away) {

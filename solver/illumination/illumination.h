@@ -1,8 +1,8 @@
 #pragma once
 // The lights of a problem, ready to be sampled.
 
-#include "solver/illumination/light_sampler.h"
 #include "solver/illumination/bright_areas.h"
+#include "solver/illumination/light_sampler.h"
 #include "solver/illumination/problem.h"
 #include "solver/lights/sky.h"
 #include "solver/openings/opening_sampler.h"

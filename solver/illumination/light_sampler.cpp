@@ -124,13 +124,15 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
           probability * r2 / (cos_q * area), q};
 }
 
-LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
+LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v,
+                                       double share) const {
   const LightTree::Choice choice = luminaires_.choose(p, n, pick);
   if (!(choice.probability > 0)) return {};
   const PlacedLuminaire& luminaire = problem_.lights.luminaires[choice.light];
   const Vec3 q = light_point(luminaire, p, u, v);
   const double probability = share * choice.probability;
-  return {short_of(q, p, problem_.rays.lift()), open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.mirror};
+  return {
+      short_of(q, p, problem_.rays.lift()), open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.mirror};
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
@@ -158,7 +160,8 @@ double LightSampler::density(PatchId q, const Vec3& p, const Vec3& n, double dis
          (cos_q * problem_.patches.area[q]);
 }
 
-double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const {
+double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d,
+                             bool bright_patches_only) const {
   if (hit.reflected || !hit.patch.valid() || !is_bright(hit.patch)) return 0;
   return density(hit.patch, p, n, hit.distance, -dot(problem_.patches.normal[hit.patch], d), bright_patches_only);
 }

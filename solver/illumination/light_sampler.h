@@ -40,7 +40,8 @@ class LightSampler {
 
   /// Density per solid angle with which sample() would choose, at p with normal n, the direction that ends on the
   /// explicit patch q at `distance`, `cos_q` being the cosine there.
-  double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q, bool bright_patches_only) const;
+  double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
+                 bool bright_patches_only) const;
 
   /// The same where a ray from p along d (unit) ends; 0 when that is no bright patch that shadow rays look for.
   double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const;
@@ -60,9 +61,9 @@ class LightSampler {
 
   const Problem& problem_;
   const Field& glow_;
-  LightTree patches_, luminaires_;                                    ///< of bright_; of all luminaires, by number
-  std::vector<std::uint32_t> bright_;                            ///< patches sampled like lights
-  std::vector<std::uint32_t> number_of_patch_;                   ///< N, number in bright_ or kNone; empty without any
+  LightTree patches_, luminaires_;              ///< of bright_; of all luminaires, by number
+  std::vector<std::uint32_t> bright_;           ///< patches sampled like lights
+  std::vector<std::uint32_t> number_of_patch_;  ///< N, number in bright_ or kNone; empty without any
   double patches_power_ = 0, luminaires_power_ = 0, suns_power_ = 0;  ///< [W]
 };
 

@@ -202,8 +202,8 @@ HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh
   const Problem problem{out.elements, whole.rays, whole.lights};
   const Illumination light(problem);
   const bool late = ambient_only || monitor.should_stop();
-  const DirectLight direct =
-      direct_light(light, {.shadow_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
+  const DirectLight direct = direct_light(
+      light, {.shadow_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
   const Closure closure = measure_closure(problem.patches, problem.rays, late ? 8 : 16, options.seed);
   out.solution = shoot(
       problem, direct, closure,

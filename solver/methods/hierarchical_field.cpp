@@ -84,8 +84,7 @@ void correct_flux(const HierarchicalSolution& coarse, const Field& E, const Elem
       found += std::ldexp(mesh.patches().area[mesh[leaves[i]].patch], -mesh[leaves[i]].level) * on_leaves.at(i, c);
     const double ratio = found > 0 ? exact / found : 1;
     if (std::abs(ratio - 1) > kMost) continue;
-    for (std::size_t p = 0; p < rest.size(); ++p)
-      field.E.at(p, c) = field.delta_light.at(p, c) + ratio * rest.at(p, c);
+    for (std::size_t p = 0; p < rest.size(); ++p) field.E.at(p, c) = field.delta_light.at(p, c) + ratio * rest.at(p, c);
   }
 }
 

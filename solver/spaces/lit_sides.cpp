@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "solver/illumination/light_sampler.h"
 #include "solver/illumination/bright_areas.h"
+#include "solver/illumination/light_sampler.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
 #include "solver/model/disjoint_sets.h"
@@ -18,8 +18,9 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 14;   ///< patches between two looks at what is known by then
-constexpr std::size_t kLuminaireSamples = 64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
+constexpr std::size_t kBlock = 1 << 14;  ///< patches between two looks at what is known by then
+constexpr std::size_t kLuminaireSamples =
+    64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
 
 /// Patches that see each other, and what is known of each such space.
 class Spaces {
@@ -104,7 +105,7 @@ struct Found {
 };
 
 Found look_for_luminaires(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
-                     std::uint64_t seed) {
+                          std::uint64_t seed) {
   const auto corners = problem.patches.corner_positions(PatchId{i});
   const Vec3 n = problem.patches.normal[i];
   const double lift = problem.rays.lift();
@@ -174,7 +175,7 @@ void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& space
 
 /// Lets the given patches look for luminaires and for the patches that glow.
 void search_luminaires(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
-                  std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
+                       std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
   const LightSampler emitters(problem, glow);
   for (std::size_t begin = 0; begin < receivers.size() && !monitor.should_stop(); begin += kBlock) {
     std::vector<Found> found(std::min(kBlock, receivers.size() - begin));

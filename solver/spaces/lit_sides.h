@@ -10,8 +10,8 @@
 namespace clerestory {
 
 struct LitSides {
-  std::vector<bool> wanted;        ///< 2T, for make_patches()
-  std::size_t dark_sides = 0;      ///< sides no light reaches: inside solids, outside of sealed rooms
+  std::vector<bool> wanted;             ///< 2T, for make_patches()
+  std::size_t dark_sides = 0;           ///< sides no light reaches: inside solids, outside of sealed rooms
   std::size_t luminaire_interiors = 0;  ///< emitting sides that only see the inside of their own lamp body
 };
 

@@ -117,7 +117,8 @@ TEST(Hierarchical, TheSameBitsForOneAndTwoThreads) {
 
 TEST(Hierarchical, ErrorFallsWithTheRaysAtLeastAsOneOverTheRoot) {
   const Room room(lamp_room(0.5, 8));
-  const Solution reference = room.solve({.bundle_rays = 8192, .bright_rays = 8192, .tolerance = 1e9, .seed = 7}).solution;
+  const Solution reference =
+      room.solve({.bundle_rays = 8192, .bright_rays = 8192, .tolerance = 1e9, .seed = 7}).solution;
   std::vector<double> error;
   for (const int rays : {32, 512})
     error.push_back(rms_error(

@@ -33,8 +33,9 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
                              [&](const Material& m) { return static_cast<std::size_t>(m.kind) == kind; }))
       out.push_back(std::string(kMaterialKindNames[kind]) + ": the scene has none");
   if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
-  if (s.lit_sides.lamp_interiors)
-    out.push_back(counted(s.lit_sides.lamp_interiors, "emitting side") + " that shine on nothing but their own lamp");
+  if (s.lit_sides.luminaire_interiors)
+    out.push_back(counted(s.lit_sides.luminaire_interiors, "emitting side") +
+                  " that shine on nothing but their own luminaire");
   return out;
 }
 
@@ -94,9 +95,9 @@ std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights) {
     rows[at->second].luminous_flux += photometric(power);
   };
   constexpr const char* kTypes[] = {"point", "spot", "file"};  // in the order of Luminaire::kind
-  for (const Luminaire& lamp : lights.luminaires) {
-    const auto* file = std::get_if<WebLuminaire>(&lamp.kind);
-    add(kTypes[lamp.kind.index()], file ? file->web.get() : nullptr, lamp.group, power(lamp));
+  for (const Luminaire& luminaire : lights.luminaires) {
+    const auto* file = std::get_if<WebLuminaire>(&luminaire.kind);
+    add(kTypes[luminaire.kind.index()], file ? file->web.get() : nullptr, luminaire.group, power(luminaire));
   }
   return rows;
 }

@@ -6,10 +6,10 @@
 
 #include "meshing/clean.h"
 #include "meshing/imprint_contacts.h"
-#include "meshing/mesh_report.h"
 #include "meshing/planar_regions.h"
 #include "meshing/plane_groups.h"
 #include "meshing/subdivide.h"
+#include "meshing/triangle_quality.h"
 #include "solver/model/error.h"
 
 namespace clerestory {

@@ -84,8 +84,8 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
 }
 
 void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Observer& observer) {
-  for (const PlacedLuminaire& lamp : problem.lights.luminaires)
-    if (lamp.mirror == kNoMirror) warn_about_luminaire(problem, lamp.name, lamp.position, observer);
+  for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
+    if (luminaire.mirror == kNoMirror) warn_about_luminaire(problem, luminaire.name, luminaire.position, observer);
   const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
   if (!buried.empty())
     observer.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +

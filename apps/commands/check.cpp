@@ -7,9 +7,9 @@
 #include "pipeline/wording.h"
 
 #include "apps/commands/commands.h"
+#include "apps/effective_settings.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
-#include "apps/settings.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/units.h"
 
@@ -70,11 +70,11 @@ std::string describe(SkyModel model) {
 
 void say_lights(const Scene& scene, Console& console) {
   const LightSpec& l = scene.lights;
-  for (const Luminaire& lamp : l.luminaires) {
+  for (const Luminaire& luminaire : l.luminaires) {
     constexpr const char* kTypes[] = {"point luminaire", "spot", "luminaire"};  // in the order of Luminaire::kind
-    const auto* file = std::get_if<WebLuminaire>(&lamp.kind);
-    console.say("  light    " + std::string(kTypes[lamp.kind.index()]) + " '" + lamp.name + "'" +
-                (file ? " of " + file->web->name : "") + ", " + rounded(photometric(power(lamp))) + " lm");
+    const auto* file = std::get_if<WebLuminaire>(&luminaire.kind);
+    console.say("  light    " + std::string(kTypes[luminaire.kind.index()]) + " '" + luminaire.name + "'" +
+                (file ? " of " + file->web->name : "") + ", " + rounded(photometric(power(luminaire))) + " lm");
   }
   if (l.sky)
     console.say("  light    " + describe(l.sky->model) + " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +

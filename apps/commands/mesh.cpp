@@ -7,9 +7,9 @@
 #include "pipeline/wording.h"
 
 #include "apps/commands/commands.h"
+#include "apps/effective_settings.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
-#include "apps/settings.h"
 #include "io/atomic_file.h"
 #include "io/write_result.h"
 

@@ -7,8 +7,8 @@
 #include "pipeline/wording.h"
 
 #include "apps/commands/commands.h"
+#include "apps/effective_settings.h"
 #include "apps/run.h"
-#include "apps/settings.h"
 #include "apps/solve_report.h"
 #include "io/atomic_file.h"
 #include "io/read_sensors.h"

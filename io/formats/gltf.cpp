@@ -325,10 +325,11 @@ class GltfReader {
     const Vec3 back = normalized(place.direction({0, 0, 1})), side = place.direction({1, 0, 0});
     const Vec3 x = normalized(side - back * dot(side, back));
     if (!(length(back) > 0 && length(x) > 0)) file_.refuse(where + ": its light has no direction");
-    WebLuminaire lamp{web, {x, cross(back, x), back}, {}};
-    if (web->type == WebType::A) lamp.axes = {-back, lamp.axes.y, x};  // the beam is x then, and V goes up to z
-    lamp.scale = colour * (multiplier / kWhiteEfficacy);
-    model_.lights.luminaires.push_back({text_member(file_, node, "name", where), place.b, {}, std::move(lamp)});
+    WebLuminaire luminaire{web, {x, cross(back, x), back}, {}};
+    if (web->type == WebType::A)
+      luminaire.axes = {-back, luminaire.axes.y, x};  // the beam is x then, and V goes up to z
+    luminaire.scale = colour * (multiplier / kWhiteEfficacy);
+    model_.lights.luminaires.push_back({text_member(file_, node, "name", where), place.b, {}, std::move(luminaire)});
   }
 
   std::shared_ptr<const PhotometricWeb> light_profile(std::size_t index, const std::string& where) {

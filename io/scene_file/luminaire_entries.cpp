@@ -15,8 +15,9 @@ namespace clerestory {
 namespace {
 
 constexpr std::size_t kMostLuminaires = 1'000'000;
-constexpr Range kFlux{
-    .low = 0, .high = kMostLight, .advice = "a lamp emits no less than nothing and no more than a result can hold"};
+constexpr Range kFlux{.low = 0,
+                      .high = kMostLight,
+                      .advice = "a luminaire emits no less than nothing and no more than a result can hold"};
 
 class LuminaireReader {
  public:
@@ -71,7 +72,8 @@ class LuminaireReader {
 
   Spectrum read_point_power(const JsonObject& object) {
     const auto power = read_flux(object);
-    if (!power) throw InputError(text(object.place("luminous_flux"), " is missing; a lamp needs its flux in lumens"));
+    if (!power)
+      throw InputError(text(object.place("luminous_flux"), " is missing; a luminaire needs its flux in lumens"));
     if (object.unit_vector("aim") || object.number("rotation")) {
       warnings_.push_back(
           text(object.where(), ": aim and rotation are not used: a point shines the same in all directions"));
@@ -80,27 +82,27 @@ class LuminaireReader {
   }
 
   WebLuminaire read_web(const JsonObject& object) {
-    WebLuminaire lamp;
-    lamp.web = web_of(object);
-    const PhotometricWeb& web = *lamp.web;
+    WebLuminaire luminaire;
+    luminaire.web = web_of(object);
+    const PhotometricWeb& web = *luminaire.web;
     const Vec3 upright = beam_axis(web.type);
     const Vec3 aim = object.unit_vector("aim").value_or(upright);
     const double rotation =
         object.number("rotation", {.low = -3600, .high = 3600, .advice = "it is in degrees about aim"}).value_or(0);
-    lamp.axes = aimed(web.type, aim, rotation);
-    lamp.scale = Spectrum(1 / kWhiteEfficacy);
+    luminaire.axes = aimed(web.type, aim, rotation);
+    luminaire.scale = Spectrum(1 / kWhiteEfficacy);
     if (const auto power = read_flux(object)) {
       if (!(web.flux > 0)) {
         throw InputError(text(object.place("file"), " '", web.name, "' gives no light; its flux cannot be scaled to ",
                               "the one the scene asks for"));
       }
-      lamp.scale = *power / web.flux;
+      luminaire.scale = *power / web.flux;
     } else {
       const double tilt = std::acos(std::clamp(dot(aim, upright), -1.0, 1.0)) * 180 / std::numbers::pi;
-      lamp.scale *= tilt_factor(web, tilt);
+      luminaire.scale *= tilt_factor(web, tilt);
     }
-    lamp.scale *= read_dimming(object);
-    return lamp;
+    luminaire.scale *= read_dimming(object);
+    return luminaire;
   }
 
   std::shared_ptr<const PhotometricWeb> web_of(const JsonObject& object) {

@@ -87,20 +87,22 @@ Vec3 light_position(const Vec3& p, const std::string& light, const std::string& 
 }
 
 void turn(PointLuminaire&, const Affine&) {}
-void turn(SpotLuminaire& lamp, const Affine& place) { lamp.direction = normalized(place.direction(lamp.direction)); }
-void turn(WebLuminaire& lamp, const Affine& place) {
+void turn(SpotLuminaire& luminaire, const Affine& place) {
+  luminaire.direction = normalized(place.direction(luminaire.direction));
+}
+void turn(WebLuminaire& luminaire, const Affine& place) {
   // A mirrored transform does not mirror the lamp: its third axis follows from the others.
-  lamp.axes.z = normalized(place.direction(lamp.axes.z));
-  const Vec3 x = place.direction(lamp.axes.x);
-  lamp.axes.x = normalized(x - lamp.axes.z * dot(x, lamp.axes.z));
-  lamp.axes.y = cross(lamp.axes.z, lamp.axes.x);
+  luminaire.axes.z = normalized(place.direction(luminaire.axes.z));
+  const Vec3 x = place.direction(luminaire.axes.x);
+  luminaire.axes.x = normalized(x - luminaire.axes.z * dot(x, luminaire.axes.z));
+  luminaire.axes.y = cross(luminaire.axes.z, luminaire.axes.x);
 }
 
 void add_lights(Scene& scene, const LightSpec& lights, const Affine& place, const std::string& file) {
-  for (Luminaire lamp : lights.luminaires) {
-    lamp.position = light_position(place.point(lamp.position), lamp.name, file);
-    std::visit([&](auto& kind) { turn(kind, place); }, lamp.kind);
-    scene.lights.luminaires.push_back(std::move(lamp));
+  for (Luminaire luminaire : lights.luminaires) {
+    luminaire.position = light_position(place.point(luminaire.position), luminaire.name, file);
+    std::visit([&](auto& kind) { turn(kind, place); }, luminaire.kind);
+    scene.lights.luminaires.push_back(std::move(luminaire));
   }
   for (Sun sun : lights.suns) {
     sun.direction = normalized(place.direction(sun.direction));

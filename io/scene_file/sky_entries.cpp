@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "io/formats/epw.h"
-#include "io/formats/sky_image.h"
+#include "io/formats/read_sky_image.h"
 #include "io/input_file.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/scene_file/place_and_time.h"

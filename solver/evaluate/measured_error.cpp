@@ -28,31 +28,31 @@ MeasuredError summarise(std::span<const Comparison> samples) {
   error.samples = samples.size();
   if (samples.empty()) return error;
   const double n = static_cast<double>(samples.size());
-  double mean = 0, squares = 0, noise = 0;
+  double mean = 0, squares = 0, variance_of_references = 0;
   for (const Comparison& s : samples) mean += s.r / n;
   if (!(mean > 0)) return error;
   std::vector<double> relative;
   for (const Comparison& s : samples) {
     squares += (s.x - s.r) * (s.x - s.r) / n;
-    noise += s.std_error * s.std_error / n;
+    variance_of_references += s.std_error * s.std_error / n;
     // Points much darker than the mean would make a share of nothing.
     relative.push_back(std::abs(s.x - s.r) / std::max(s.r, 0.05 * mean));
   }
   double spread = 0;
   for (const Comparison& s : samples) {
-    const double d2 = (s.x - s.r) * (s.x - s.r) - s.std_error * s.std_error - (squares - noise);
+    const double d2 = (s.x - s.r) * (s.x - s.r) - s.std_error * s.std_error - (squares - variance_of_references);
     spread += d2 * d2 / n;
   }
   // The reference's own noise adds to the differences; its variance is known and comes off.
-  const double variance = std::max(squares - noise, 0.0);
+  const double variance_of_field = std::max(squares - variance_of_references, 0.0);
   const double half_width = 1.96 * std::sqrt(spread / n);  // of the mean square
-  error.rms_relative = std::sqrt(variance) / mean;
-  error.confidence = (std::sqrt(variance + half_width) - std::sqrt(variance)) / mean;
+  error.rms_relative = std::sqrt(variance_of_field) / mean;
+  error.confidence = (std::sqrt(variance_of_field + half_width) - std::sqrt(variance_of_field)) / mean;
   // Right when errors are distributed like the noise, and too large when few large errors make up the variance. A
   // distribution fitted to what lies behind the noise was tried: it took tails for noise and was low by a quarter.
   const auto p95 = relative.begin() + static_cast<std::ptrdiff_t>(0.95 * (n - 1));
   std::nth_element(relative.begin(), p95, relative.end());
-  error.p95_relative = *p95 * (squares > 0 ? std::sqrt(variance / squares) : 1.0);
+  error.p95_relative = *p95 * (squares > 0 ? std::sqrt(variance_of_field / squares) : 1.0);
   return error;
 }
 

@@ -18,20 +18,21 @@ namespace clerestory {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kWorthLooking = 0.1;  ///< share of the bright patches' light in those that are not in panels looked at
-constexpr double kLeastOfBest = 0.2;   ///< of the light of the best panel, else it has no rays of its own
-constexpr std::size_t kMostOpenings = 8, kMostPanels = 4;  ///< that a point looks at by rays of their own
-/// Owners of rays: openings and, from kPanels on, panels, by number.
-constexpr std::uint32_t kPanels = 0x80000000, kNobody = kNoOpening;
+constexpr double kWorthLooking =
+    0.1;  ///< share of the bright patches' light in those that are not in bright areas looked at
+constexpr double kLeastOfBest = 0.2;  ///< of the light of the best bright area, else it has no rays of its own
+constexpr std::size_t kMostOpenings = 8, kMostBrightAreas = 4;  ///< that a point looks at by rays of their own
+/// Owners of rays: openings and, from kPanels on, bright areas, by number.
+constexpr std::uint32_t kBrightAreas = 0x80000000, kNobody = kNoOpening;
 
 /// What comes back along rays from one point.
 class View {
  public:
-  View(const Illumination& light, const Vec3& p, const Frame& frame, int lamp_rays, const GatherPlan& plan)
-      : light_(light), p_(p), frame_(frame), lamp_rays_(lamp_rays), plan_(plan) {}
+  View(const Illumination& light, const Vec3& p, const Frame& frame, int bright_rays, const GatherPlan& plan)
+      : light_(light), p_(p), frame_(frame), bright_rays_(bright_rays), plan_(plan) {}
 
   /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
-  /// openings or panels, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
+  /// openings or bright areas, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
   void look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
             std::span<Spectrum> values) const {
     std::array<Ray, 16> rays;
@@ -46,10 +47,10 @@ class View {
       if (hit.escaped()) {
         values[k] = light_.sky(hit.direction(rays[k])) * kPi * hit.transmittance;
       } else if (hit.patch.valid()) {
-        Spectrum back = light_.lamps.glow()[hit.patch];
-        if (owner == kNobody && lamp_rays_ > 0)
-          back *=
-              balance_heuristic(density[k], lamp_rays_ * light_.lamps.density(hit, p_, frame_.n, directions[k], true));
+        Spectrum back = light_.sampler.glow()[hit.patch];
+        if (owner == kNobody && bright_rays_ > 0)
+          back *= balance_heuristic(density[k],
+                                    bright_rays_ * light_.sampler.density(hit, p_, frame_.n, directions[k], true));
         values[k] = back * hit.transmittance;
       }
     }
@@ -59,30 +60,31 @@ class View {
   std::uint32_t owner_of(const Vec3& direction, double distance, PatchId patch) const {
     const std::uint32_t opening =
         first_way_out(light_.problem.lights.openings, plan_.openings, p_, direction, distance);
-    if (opening != kNoOpening || !patch.valid() || plan_.panels.empty()) return opening;
-    const std::uint32_t panel = light_.panels.of(patch);
-    return std::ranges::find(plan_.panels, panel) == plan_.panels.end() ? kNobody : kPanels + panel;
+    if (opening != kNoOpening || !patch.valid() || plan_.bright_areas.empty()) return opening;
+    const std::uint32_t bright_area = light_.bright_areas.of(patch);
+    return std::ranges::find(plan_.bright_areas, bright_area) == plan_.bright_areas.end() ? kNobody
+                                                                                          : kBrightAreas + bright_area;
   }
 
  private:
   const Illumination& light_;
   Vec3 p_;
   const Frame& frame_;
-  int lamp_rays_;
+  int bright_rays_;
   const GatherPlan& plan_;
 };
 
-int lamp_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan) {
-  return plan.looks_for_lamps && light.lamps.has_emitters() ? pattern.quality().lamp_rays : 0;
+int bright_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan) {
+  return plan.looks_for_bright_patches && light.sampler.has_bright_patches() ? pattern.quality().bright_rays : 0;
 }
 
 /// Whether any of a few rays to bright patches gets there: those outside of a room are none of its lamps.
-bool sees_lamps(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                unsigned long long& rays) {
-  if (!light.lamps.has_emitters()) return false;
-  return any_visible(light.problem.rays, GatherPattern::kLampPilots, [&](std::uint32_t k, Vec3& from, Vec3& to) {
-    const auto& u = pattern.lamp_pilots()[k];
-    const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], true);
+bool sees_bright_patches(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                         unsigned long long& rays) {
+  if (!light.sampler.has_bright_patches()) return false;
+  return any_visible(light.problem.rays, GatherPattern::kBrightPilots, [&](std::uint32_t k, Vec3& from, Vec3& to) {
+    const auto& u = pattern.bright_pilots()[k];
+    const LightSample s = light.sampler.sample(p, n, u[0], u[1], u[2], true);
     from = p, to = s.end;
     ++rays;
     return s.density > 0;
@@ -129,7 +131,7 @@ double cosine_density(const std::array<float, 3>& d) { return std::max(1e-6, sta
 
 struct Sum {
   Spectrum E{0.0};
-  double noise = 0;  ///< variance by the differences of neighbouring rays
+  double variance = 0;  ///< variance by the differences of neighbouring rays
 };
 
 /// Irradiance along the bundle's rays that belong to nobody else.
@@ -146,7 +148,7 @@ Sum from_bundle(const View& view, const Frame& frame, const Strata& strata, cons
     for (std::size_t k = 0; k + 1 < queued; k += 2) {
       const double difference =
           luminous_mean(values[k]) * share_of_ray[k] - luminous_mean(values[k + 1]) * share_of_ray[k + 1];
-      sum.noise += difference * difference;
+      sum.variance += difference * difference;
     }
     rays += queued;
     queued = 0;
@@ -166,7 +168,7 @@ Sum from_bundle(const View& view, const Frame& frame, const Strata& strata, cons
   return sum;
 }
 
-/// What pilot rays of the bundle find in each stratum; 0 where they belong to an opening or a panel.
+/// What pilot rays of the bundle find in each stratum; 0 where they belong to an opening or a bright area.
 std::vector<Spectrum> pilot_values(const View& view, const Frame& frame, const Strata& strata,
                                    unsigned long long& rays) {
   const int count = strata.budget().strata();
@@ -258,7 +260,7 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
       const auto& [direction, per_share] = sights[k];
       const Spectrum E = (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan[first + k].share());
       sum.E += E;
-      if (k % 2 == 1) sum.noise += (luminous_mean(E) - last) * (luminous_mean(E) - last);
+      if (k % 2 == 1) sum.variance += (luminous_mean(E) - last) * (luminous_mean(E) - last);
       last = luminous_mean(E);
     }
   }
@@ -268,7 +270,7 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
 
 Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
                         const GatherPlan& plan, const View& view) {
-  const int count = pattern.quality().lamp_rays;
+  const int count = pattern.quality().bright_rays;
   const RayBudget& budget = pattern.quality().bundle;
   const RayScene& rays = light.problem.rays;
   Spectrum sum(0.0);
@@ -276,8 +278,8 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
     sum += irradiance * rays.glass_transmittance(from, to);
   });
   for (int k = 0; k < count; ++k) {
-    const auto& u = pattern.lamp_choices()[static_cast<std::size_t>(k)];
-    const LightSample s = light.lamps.sample(p, frame.n, u[0], u[1], u[2], true);
+    const auto& u = pattern.bright_choices()[static_cast<std::size_t>(k)];
+    const LightSample s = light.sampler.sample(p, frame.n, u[0], u[1], u[2], true);
     if (!(s.density > 0)) continue;
     const Vec3 d = normalized(s.end - p);
     if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
@@ -293,7 +295,7 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
 
 bool wants_plan(const Illumination& light, const GatherPattern& pattern) {
   const RayBudget& bundle = pattern.quality().bundle;
-  if (!light.panels.shape.empty()) return true;
+  if (!light.bright_areas.shape.empty()) return true;
   return !light.sky.dark() && (bundle.deepest() > bundle.least() || !light.problem.lights.openings.empty());
 }
 
@@ -307,7 +309,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
     const PolygonView polygon(p, n, area.triangles, area.corners);
     if (!(polygon.solid_angle() > 0)) return false;
     const View view(light, p, frame, 0, owners);
-    const double others = light.panels.ambient / std::max(1e-12, form_factor(area, p, n));
+    const double others = light.bright_areas.ambient / std::max(1e-12, form_factor(area, p, n));
     AreaPlan found = plan_area(pattern.area_cells(), pattern.quality().area, others, [&](auto points, auto values) {
       std::array<PolygonView::Sight, 16> sights;
       for (std::size_t first = 0; first < points.size(); first += 16) {
@@ -317,7 +319,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
       rays += points.size();
     });
     if (found.mean.is_black()) return false;
-    numbers.push_back(owner & ~kPanels);
+    numbers.push_back(owner & ~kBrightAreas);
     plans.push_back(std::move(found));
     return true;
   };
@@ -326,19 +328,20 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
     owners.openings.push_back(k);
     if (!look_at(openings[k], k, plan.openings, plan.opening_plans)) owners.openings.pop_back();
   }
-  for (const std::uint32_t k : areas_over(light.panels.shape, p, n, kMostPanels, kLeastOfBest)) {
-    owners.panels.push_back(k);
-    look_at(light.panels.shape[k], kPanels + k, plan.panels, plan.panel_plans);
+  for (const std::uint32_t k : areas_over(light.bright_areas.shape, p, n, kMostBrightAreas, kLeastOfBest)) {
+    owners.bright_areas.push_back(k);
+    look_at(light.bright_areas.shape[k], kBrightAreas + k, plan.bright_areas, plan.bright_area_plans);
   }
-  double left = light.panels.all_flux;
-  for (const std::uint32_t k : plan.panels) left -= light.panels.flux[k];
-  plan.looks_for_lamps = (light.panels.shape.empty() || left > kWorthLooking * light.panels.all_flux) &&
-                         (light.sky.dark() || sees_lamps(light, p, n, pattern, rays));
+  double left = light.bright_areas.all_flux;
+  for (const std::uint32_t k : plan.bright_areas) left -= light.bright_areas.flux[k];
+  plan.looks_for_bright_patches =
+      (light.bright_areas.shape.empty() || left > kWorthLooking * light.bright_areas.all_flux) &&
+      (light.sky.dark() || sees_bright_patches(light, p, n, pattern, rays));
   const Strata& bundle = pattern.bundle();
   const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
   const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;
   if (sky == SkyInView::edge) {
-    const View view(light, p, frame, lamp_rays(light, pattern, plan), plan);
+    const View view(light, p, frame, bright_rays(light, pattern, plan), plan);
     plan.bundle = shares_by(pilot_values(view, frame, bundle, rays), bundle.budget());
   } else if (sky == SkyInView::all) {  // changes slowly all over: half of the surplus, evenly
     const int rays_each = (bundle.budget().rays + bundle.budget().most_rays) / 2 / bundle.budget().strata();
@@ -348,11 +351,11 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   return plan;
 }
 
-PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                        const GatherPlan& plan, unsigned long long& rays) {
-  const int to_lamps = lamp_rays(light, pattern, plan);
+GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                           const GatherPlan& plan, unsigned long long& rays) {
+  const int to_bright_patches = bright_rays(light, pattern, plan);
   const Frame frame(n);
-  const View view(light, p, frame, to_lamps, plan);
+  const View view(light, p, frame, to_bright_patches, plan);
   Sum sum = from_bundle(view, frame, pattern.bundle(), plan.bundle, rays);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
     // A plan may come from the other side of the area's plane: from there no ray belongs to it.
@@ -361,27 +364,28 @@ PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n,
     if (!(polygon.solid_angle() > 0)) return;
     const Sum found = from_area({view, polygon, owner}, area_plan, pattern.area_cells(), area, p, n, rays);
     sum.E += found.E;
-    sum.noise += found.noise;
+    sum.variance += found.variance;
   };
   for (std::size_t k = 0; k < plan.openings.size(); ++k)
     look_at(light.problem.lights.openings[plan.openings[k]], plan.openings[k], plan.opening_plans[k]);
-  for (std::size_t k = 0; k < plan.panels.size(); ++k)
-    look_at(light.panels.shape[plan.panels[k]], kPanels + plan.panels[k], plan.panel_plans[k]);
+  for (std::size_t k = 0; k < plan.bright_areas.size(); ++k)
+    look_at(light.bright_areas.shape[plan.bright_areas[k]], kBrightAreas + plan.bright_areas[k],
+            plan.bright_area_plans[k]);
 
-  PointLight at{sum.E, Spectrum(0.0), std::sqrt(sum.noise)};
-  if (to_lamps > 0) {
+  GatheredLight at{sum.E, Spectrum(0.0), std::sqrt(sum.variance)};
+  if (to_bright_patches > 0) {
     at.E += bright_patches(light, p, frame, pattern, plan, view);
-    rays += static_cast<unsigned>(to_lamps);
+    rays += static_cast<unsigned>(to_bright_patches);
   }
   if (!light.problem.lights.empty()) {
-    at.small_lights = light.lamps.small_lights(p, n, pattern.quality().sun_rays, pattern.sun_key());
-    at.E += at.small_lights;
+    at.delta_light = light.sampler.delta_light(p, n, pattern.quality().sun_rays, pattern.sun_key());
+    at.E += at.delta_light;
   }
   return at;
 }
 
-PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                        unsigned long long& rays) {
+GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                           unsigned long long& rays) {
   return gather_point(light, p, n, pattern,
                       wants_plan(light, pattern) ? plan_gather(light, p, n, pattern, rays) : GatherPlan{}, rays);
 }

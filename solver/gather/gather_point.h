@@ -10,10 +10,11 @@
 namespace clerestory {
 
 /// Irradiance [W/m2] at a point.
-struct PointLight {
-  Spectrum E;             ///< from everything
-  Spectrum small_lights;  ///< from luminaires without extent and suns; part of E
-  double noise = 0;  ///< standard error of E from the bundle, luminous mean, by the differences of neighbouring rays
+struct GatheredLight {
+  Spectrum E;            ///< from everything
+  Spectrum delta_light;  ///< from luminaires without extent and suns; part of E
+  double std_error =
+      0;  ///< standard error of E from the bundle, luminous mean, by the differences of neighbouring rays
 };
 
 /// Rays for each stratum as powers of 2: where a pilot's ray and its neighbours' come back alike, the least. Empty: the
@@ -24,9 +25,9 @@ using RayShares = std::vector<std::uint8_t>;
 /// is biased; the plan serves points nearby too.
 struct GatherPlan {
   RayShares bundle;
-  bool looks_for_lamps = true;                       ///< by shadow rays; else bright patches are left to the bundle
-  std::vector<std::uint32_t> openings, panels;       ///< looked at by rays of their own
-  std::vector<AreaPlan> opening_plans, panel_plans;  ///< of each of them; values are pi times the radiance [W/m2]
+  bool looks_for_bright_patches = true;               ///< by shadow rays; else bright patches are left to the bundle
+  std::vector<std::uint32_t> openings, bright_areas;  ///< looked at by rays of their own
+  std::vector<AreaPlan> opening_plans, bright_area_plans;  ///< of each of them; values are pi times the radiance [W/m2]
 };
 
 /// Where no sky looks in, bright patches are the sharpest contrast, and those have rays of their own.
@@ -36,20 +37,20 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 
 /// Irradiance at p (lifted) on a plane of unit normal n.
 ///
-/// Luminaires and sun by shadow rays. What lies behind the openings of the plan by rays through them, and its panels by
-/// rays at them, and by nothing else: a ray belongs to the first of the openings that it passes, else to the panel that
-/// it meets. Only what differs from the mean that the plan knows is left to chance: form factors times that mean are
-/// closed forms, so an even sky or lamp that nothing hides is exact. Other bright patches, glowing or lit, by shadow
-/// rays and by the bundle, weighted by the balance heuristic; the rest by the bundle, which looks up B (or the sky)
-/// where its rays land.
+/// Luminaires and sun by shadow rays. What lies behind the openings of the plan by rays through them, and its bright
+/// areas by rays at them, and by nothing else: a ray belongs to the first of the openings that it passes, else to the
+/// bright area that it meets. Only what differs from the mean that the plan knows is left to chance: form factors times
+/// that mean are closed forms, so an even sky or lamp that nothing hides is exact. Other bright patches, glowing or
+/// lit, by shadow rays and by the bundle, weighted by the balance heuristic; the rest by the bundle, which looks up B
+/// (or the sky) where its rays land.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.
-PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                        const GatherPlan& plan, unsigned long long& rays);
+GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                           const GatherPlan& plan, unsigned long long& rays);
 
 /// The same with a plan of its own, where it wants one.
-PointLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                        unsigned long long& rays);
+GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                           unsigned long long& rays);
 
 }  // namespace clerestory

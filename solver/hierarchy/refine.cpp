@@ -56,7 +56,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
   const auto parts = parts_of(corners);
   const Vec3 lift = normal * problem.rays.lift();
   const Frame frame(normal);
-  const int pairs = light.lamps.has_emitters() ? kPairs : 0;
+  const int pairs = light.sampler.has_bright_patches() ? kPairs : 0;
 
   Paired bundle;
   std::array<double, kParts> value;
@@ -70,7 +70,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       if (hit.escaped())
         value[s] = std::numbers::pi * luminous_mean(light.sky(hit.direction({x, d})) * hit.transmittance);
       if (!hit.patch.valid()) continue;
-      const double other = pairs > 0 ? pairs * light.lamps.density(hit, x, normal, d, true) : 0;
+      const double other = pairs > 0 ? pairs * light.sampler.density(hit, x, normal, d, true) : 0;
       const double weight = balance_heuristic(kDirections * dot(normal, d) / std::numbers::pi, other);
       value[s] = weight * luminous_mean(B[hit.patch] * hit.transmittance);
     }
@@ -78,7 +78,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
   }
   rays += kDirections * kParts;
 
-  Paired lamps;
+  Paired luminaires;
   if (pairs > 0) {
     std::array<std::array<double, kParts>, kPairs> found{};
     const std::uint64_t pick = mix_bits(key), place = mix_bits(pick);
@@ -93,7 +93,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       for (std::uint32_t k = 0; k < kPairs; ++k) {
         const auto u = sobol4(k, pick), v = sobol4(k, place);
         const Vec3 from = point_on_triangle(parts[s], v[0], v[1]) + lift;
-        const LightSample sample = light.lamps.sample(from, normal, u[0], u[1], u[2], true);
+        const LightSample sample = light.sampler.sample(from, normal, u[0], u[1], u[2], true);
         if (!(sample.density > 0)) continue;
         const double cos_p = std::max(0.0, dot(normal, normalized(sample.end - from))) / std::numbers::pi;
         const double sent =
@@ -101,7 +101,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
         if (sent > 0) shadows.send(from, sample.end, {&found[k][s], sent});
       }
     shadows.trace();
-    for (const auto& x : found) lamps.add(x);
+    for (const auto& x : found) luminaires.add(x);
     rays += kPairs * kParts;
   }
 
@@ -111,8 +111,8 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
     for (int k = 0; k < kPoints; ++k) {
       const auto v = sobol4(static_cast<std::uint32_t>(k), place);
       for (std::size_t s = 0; s < kParts; ++s)
-        value[s] = luminous_mean(light.lamps.small_lights(point_on_triangle(parts[s], v[0], v[1]) + lift, normal, 1,
-                                                          mix_bits(place + static_cast<std::uint64_t>(k))));
+        value[s] = luminous_mean(light.sampler.delta_light(point_on_triangle(parts[s], v[0], v[1]) + lift, normal, 1,
+                                                           mix_bits(place + static_cast<std::uint64_t>(k))));
       small.add(value);
     }
     rays += kPoints * kParts;
@@ -121,13 +121,13 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
   Variation result;
   std::array<double, kParts> E{};
   for (std::size_t s = 0; s < kParts; ++s)
-    for (const Paired* p : {&bundle, &lamps, &small})
+    for (const Paired* p : {&bundle, &luminaires, &small})
       if (p->count > 0) E[s] += p->mean(s);
   for (std::size_t s = 0; s < kParts; ++s) {
     result.E += E[s] / kParts;
     for (std::size_t t = s + 1; t < kParts; ++t) {
       double variance = 0;
-      for (const Paired* p : {&bundle, &lamps, &small})
+      for (const Paired* p : {&bundle, &luminaires, &small})
         if (p->count > 0) variance += p->variance(s, t);
       result.difference = std::max(result.difference, std::abs(E[s] - E[t]) - kSigmas * std::sqrt(variance));
     }

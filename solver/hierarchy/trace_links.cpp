@@ -63,7 +63,8 @@ class Tracer {
 
   void add(const Receiver& receiver, LinkBlock& out, Transport& transport, std::span<std::uint32_t> neighbours) {
     look_at(receiver);
-    pairs_ = light_.lamps.has_emitters() && options_.lamp_rays > 0 && (light_.sky.dark() || sees_bright_patches());
+    pairs_ =
+        light_.sampler.has_bright_patches() && options_.bright_rays > 0 && (light_.sky.dark() || sees_bright_patches());
     send_bundle(transport, neighbours);
     if (pairs_) send_pairs();
     fill_row(transport);
@@ -159,12 +160,12 @@ class Tracer {
         }
       } else if (hit.patch.valid()) {
         if (met < neighbours.size()) neighbours[met++] = hit.patch.value;
-        const bool bright = pairs_ && !hit.reflected && light_.lamps.is_explicit(hit.patch);
+        const bool bright = pairs_ && !hit.reflected && light_.sampler.is_bright(hit.patch);
         double weight = 1.0 / R;
         if (bright) {
           const double cos_p = dot(from.normal, d) / std::numbers::pi;
-          const double density = light_.lamps.density(hit, x, from.normal, d, true);
-          weight = cos_p * power_heuristic_over_density(R * cos_p, options_.lamp_rays * density);
+          const double density = light_.sampler.density(hit, x, from.normal, d, true);
+          weight = cos_p * power_heuristic_over_density(R * cos_p, options_.bright_rays * density);
         }
         if (bright) bright_hits_ += 1.0 / R;
         add_arrival(hit.patch, weight, passes, bright, d);
@@ -200,7 +201,7 @@ class Tracer {
     auto v = sobol4(number, mix_bits(key));
     const Member& member = pick(v[1]);
     const Vec3 from = point_on_triangle(member.corners, u[0], u[1]) + member.normal * light_.problem.rays.lift();
-    const LightSample s = light_.lamps.sample(from, member.normal, u[2], u[3], v[0], true);
+    const LightSample s = light_.sampler.sample(from, member.normal, u[2], u[3], v[0], true);
     return {from, s.density > 0 ? s.end : from, member.normal, s};
   }
 
@@ -208,7 +209,7 @@ class Tracer {
   /// any that gets through, bright patches are left to the bundle.
   bool sees_bright_patches() const {
     return any_visible(light_.problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
-      const Pair p = pair(k, mix_bits(key_ + kLampPairPilot));
+      const Pair p = pair(k, mix_bits(key_ + kBrightPairPilot));
       from = p.from, to = p.to;
       return p.sample.density > 0;
     });
@@ -216,7 +217,7 @@ class Tracer {
 
   void send_pairs() {
     const RayScene& rays = light_.problem.rays;
-    const std::uint64_t key = mix_bits(key_ + kLampPairs);
+    const std::uint64_t key = mix_bits(key_ + kBrightPairs);
     struct Load {
       PatchId source;
       double weight;
@@ -226,13 +227,13 @@ class Tracer {
       const double passes = luminous_mean(rays.glass_transmittance(from, to));
       add_arrival(load.source, load.weight, passes, true, load.direction);
     });
-    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(options_.lamp_rays); ++k) {
+    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(options_.bright_rays); ++k) {
       const Pair p = pair(k, key);
       if (!(p.sample.density > 0)) continue;
       const Vec3 direction = normalized(p.to - p.from);
       const double cos_p = std::max(0.0, dot(p.normal, direction)) / std::numbers::pi;
       const double weight =
-          cos_p * power_heuristic_over_density(options_.lamp_rays * p.sample.density, options_.bundle_rays * cos_p);
+          cos_p * power_heuristic_over_density(options_.bright_rays * p.sample.density, options_.bundle_rays * cos_p);
       if (weight > 0) shadows.send(p.from, p.to, {p.sample.patch, weight, direction});
     }
     shadows.trace();
@@ -441,7 +442,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
       return transport;
     }
   }
-  const int pairs = light.lamps.has_emitters() ? options.lamp_rays : 0;
+  const int pairs = light.sampler.has_bright_patches() ? options.bright_rays : 0;
   transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs);
   find_spaces(transport, patches, tree, receivers, neighbours);
   return transport;

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostReceivers = 200'000;
 
 struct LinkOptions {
   int bundle_rays = 256;
-  int lamp_rays = 128;          ///< pairs with bright sources, a multiple of 16
+  int bright_rays = 128;        ///< pairs with bright sources, a multiple of 16
   double uniform = 0.01;        ///< hits are linked at the highest node whose B varies by less than this share of
                                 ///< E_p; 0: at the leaf they met
   double cluster_diameter = 0;  ///< nodes of up to 32 leaves within this receive together [m]
@@ -25,7 +25,7 @@ struct LinkOptions {
 };
 
 /// Two estimators for the weight of p <- q, combined by the power heuristic (Veach & Guibas 1995): R cosine rays that
-/// leave points all over p, and L pairs of a point of p with one of a bright source, chosen by light.lamps. A ray of
+/// leave points all over p, and L pairs of a point of p with one of a bright source, chosen by light.sampler. A ray of
 /// either kind that ends on a bright patch counts
 ///   w = c own / (own^2 + other^2),   c = cos / pi, own and other: R c and L density, or the other way round;
 /// one that ends elsewhere w = 1 / R. The bright patches' weights so have the noise of pairs where these are better.

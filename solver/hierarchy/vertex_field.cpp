@@ -51,8 +51,8 @@ class Gatherer {
     const std::size_t begin = field.known.size(), end = at.position.size();
     const int channels = light_.problem.patches.channels;
     field.E.value.resize(end * static_cast<std::size_t>(channels));
-    field.small_lights.value.resize(field.E.value.size());
-    field.noise.resize(end);
+    field.delta_light.value.resize(field.E.value.size());
+    field.std_error.resize(end);
     field.known.resize(end);
     for (std::size_t p = begin; p < end && pilots_; ++p)
       pilot_of_.push_back(p < plans_.size() ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
@@ -73,20 +73,20 @@ class Gatherer {
   bool is_worth_it(std::size_t p) const { return p >= worth_.size() || worth_[p]; }
   void gather_at(std::size_t p, VertexField& field, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();
-    PointLight mean;
+    GatheredLight mean;
     for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
       const Vec3 n = at.sample_normal[s], x = at.sample_position[s] + n * light_.problem.rays.lift();
       if (pilots_ && pilot_of_[p] == p && !plans_[p]) plans_[p] = plan_gather(light_, x, n, pattern_, rays);
       static const GatherPlan kNone;
       const auto* plan = pilots_ && plans_[pilot_of_[p]] ? &*plans_[pilot_of_[p]] : &kNone;
-      const PointLight here = gather_point(light_, x, n, pattern_, *plan, rays);
+      const GatheredLight here = gather_point(light_, x, n, pattern_, *plan, rays);
       mean.E += here.E * at.sample_weight[s];
-      mean.small_lights += here.small_lights * at.sample_weight[s];
-      mean.noise += here.noise * at.sample_weight[s];
+      mean.delta_light += here.delta_light * at.sample_weight[s];
+      mean.std_error += here.std_error * at.sample_weight[s];
     }
     field.E.set(p, mean.E);
-    field.small_lights.set(p, mean.small_lights);
-    field.noise[p] = mean.noise;
+    field.delta_light.set(p, mean.delta_light);
+    field.std_error[p] = mean.std_error;
   }
 
   const Illumination light_;
@@ -144,9 +144,9 @@ std::vector<std::uint32_t> known_leaves(const ElementMesh& mesh, const std::vect
 /// Leaves that interpolate worse than the tolerance, the worst first.
 std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options) {
   std::vector<Candidate> worst;
-  for (const auto& [leaf, off, level, noise] : leaf_errors(mesh, field)) {
+  for (const auto& [leaf, off, E, std_error] : leaf_errors(mesh, field)) {
     if (!(mesh.edge_length(leaf, mesh[leaf].edge) > options.shortest_edge)) continue;
-    if (off > std::max(options.tolerance * level, noise)) worst.push_back({off / level, leaf});
+    if (off > std::max(options.tolerance * E, std_error)) worst.push_back({off / E, leaf});
   }
   std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
     return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
@@ -180,7 +180,7 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
     for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, gradient, k)));
     const auto [low, high] = std::minmax({E[point[0]], E[point[1]], E[point[2]]});
     off = std::max(off, kSteep * (high - low));
-    errors.push_back({leaf, off, std::max(mean(point, E), dark), mean(point, field.noise)});
+    errors.push_back({leaf, off, std::max(mean(point, E), dark), mean(point, field.std_error)});
   }
   return errors;
 }
@@ -190,12 +190,12 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
   VertexField field;
   if (monitor.should_stop()) {
     const std::size_t points = mesh.points().position.size();
-    field.E = field.small_lights = Field(points, problem.patches.channels);
-    field.noise.resize(points), field.known.resize(points);
+    field.E = field.delta_light = Field(points, problem.patches.channels);
+    field.std_error.resize(points), field.known.resize(points);
     field.complete = false;
     return field;
   }
-  field.E = field.small_lights = Field(0, problem.patches.channels);
+  field.E = field.delta_light = Field(0, problem.patches.channels);
   Gatherer gatherer(problem, B, mesh, options);
   for (int round = 0;; ++round) {
     field.complete = gatherer.gather(field, monitor);

@@ -21,8 +21,8 @@ struct FieldOptions {
 /// P x channels, by point of the mesh [W/m2].
 struct VertexField {
   Field E;
-  Field small_lights;         ///< part of E: from luminaires without extent and suns
-  std::vector<double> noise;  ///< P, standard error of E, luminous mean
+  Field delta_light;              ///< part of E: from luminaires without extent and suns
+  std::vector<double> std_error;  ///< P, standard error of E, luminous mean
   unsigned long long rays = 0;
   std::vector<bool> known;  ///< P, false: not gathered, E holds nothing
   bool complete = true;     ///< false: the monitor stopped it
@@ -46,8 +46,8 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
 struct LeafError {
   std::uint32_t leaf;  ///< element of the mesh
   double off;          ///< how far the middle of an edge may lie off the straight line
-  double level;        ///< irradiance there; at least the darkest that counts
-  double noise;        ///< standard error at the vertices
+  double E;            ///< irradiance there; at least the darkest that counts
+  double std_error;    ///< standard error at the vertices
 };
 /// Of each leaf whose vertices were gathered.
 std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& field);

@@ -17,8 +17,8 @@
 namespace clerestory {
 namespace {
 
-/// What a point of a patch is shown of a light.
-struct Shown {
+/// A way from a point of a patch to a light, not yet known to be free.
+struct ShadowTry {
   Vec3 end;             ///< of the shadow ray
   Spectrum irradiance;  ///< when nothing blocks
   std::uint32_t mirror = kNoMirror;
@@ -32,29 +32,29 @@ class PatchSampler {
       : problem_(problem),
         corners_(problem.patches.corner_positions(PatchId{patch})),
         normal_(problem.patches.normal[patch]),
-        key_(stream_key(options.seed, kLampPointsOfPatch, patch)),
+        key_(stream_key(options.seed, kShadowPointsOfPatch, patch)),
         options_(options) {}
 
   const Vec3& normal() const { return normal_; }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
   /// Whether any of the lamp may be in front of any of the patch.
-  bool faces(const Luminaire& lamp) const {
+  bool faces(const Luminaire& luminaire) const {
     return std::any_of(corners_.begin(), corners_.end(),
-                       [&](const Vec3& c) { return dot(normal_, lamp.position - c) > -reach(lamp); });
+                       [&](const Vec3& c) { return dot(normal_, luminaire.position - c) > -reach(luminaire); });
   }
 
   /// What the lamp can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
-  double estimate(const Luminaire& lamp) const {
-    if (!faces(lamp)) return 0;
+  double estimate(const Luminaire& luminaire) const {
+    if (!faces(luminaire)) return 0;
     const Vec3 middle = centre();
     double sum = 0, size2 = 0;
     for (const Vec3& p : {corners_[0], corners_[1], corners_[2], middle}) {
-      sum += luminous_mean(open_irradiance(lamp, p, normal_));
+      sum += luminous_mean(open_irradiance(luminaire, p, normal_));
       size2 = std::max(size2, dot(p - middle, p - middle));
     }
     // A beam may miss the four points; and a lamp in the middle of the patch is not as bright as it seems from there.
-    const Vec3 d = lamp.position - middle;
-    const double all_round = luminous_mean(power(lamp)) / (4 * std::numbers::pi * (dot(d, d) + size2));
+    const Vec3 d = luminaire.position - middle;
+    const double all_round = luminous_mean(power(luminaire)) / (4 * std::numbers::pi * (dot(d, d) + size2));
     return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
   }
 
@@ -63,7 +63,7 @@ class PatchSampler {
     return mean_of_choice(
         [&](const Vec3& p, double u, double v, const auto&) {
           const Vec3 end = end_for(p, u, v);
-          return Shown{end, open_at(p, end), mirror};
+          return ShadowTry{end, open_at(p, end), mirror};
         },
         wide);
   }
@@ -72,13 +72,14 @@ class PatchSampler {
   /// by. wide: the light comes from all over an opening, which sixteen rays know to a few per cent only.
   template <class Light>
   Spectrum mean_of_choice(const Light& light, bool wide) const {
-    if (options_.edge_rays <= options_.lamp_rays) return look(key_, options_.lamp_rays, light).sum / options_.lamp_rays;
+    if (options_.edge_rays <= options_.shadow_rays)
+      return look(key_, options_.shadow_rays, light).sum / options_.shadow_rays;
     // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
     // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
-    const Tally pilot = look(mix_bits(key_), options_.lamp_rays, light);
+    const Tally pilot = look(mix_bits(key_), options_.shadow_rays, light);
     const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
     const int rays =
-        on_an_edge ? options_.edge_rays : std::min(options_.edge_rays, options_.lamp_rays * (wide ? 4 : 1));
+        on_an_edge ? options_.edge_rays : std::min(options_.edge_rays, options_.shadow_rays * (wide ? 4 : 1));
     return look(key_, rays, light).sum / rays;
   }
 
@@ -100,16 +101,16 @@ class PatchSampler {
       const auto u = sobol4(k, key);
       const Vec3 from = point_on_triangle(corners_, u[0], u[1]) + normal_ * rays.lift();
       const auto pick = [&] { return sobol4(k, key + 1)[0]; };
-      const Shown shown = light(from, u[2], u[3], pick);
-      if (shown.irradiance.is_black()) continue;
+      const ShadowTry to_light = light(from, u[2], u[3], pick);
+      if (to_light.irradiance.is_black()) continue;
       ++tally.facing;
-      const Vec3 to = short_of(shown.end, from, rays.lift());
-      if (shown.mirror == kNoMirror) {
-        shadows.send(from, to, shown.irradiance);
+      const Vec3 to = short_of(to_light.end, from, rays.lift());
+      if (to_light.mirror == kNoMirror) {
+        shadows.send(from, to, to_light.irradiance);
         continue;
       }
-      const Spectrum passes = rays.transmittance_by_mirror(from, to, shown.mirror);
-      tally.sum += shown.irradiance * passes;
+      const Spectrum passes = rays.transmittance_by_mirror(from, to, to_light.mirror);
+      tally.sum += to_light.irradiance * passes;
       tally.visible += !passes.is_black();
     }
     shadows.trace();
@@ -123,22 +124,22 @@ class PatchSampler {
   const DirectOptions& options_;
 };
 
-Spectrum from_lamp(const PatchSampler& patch, const PlacedLuminaire& lamp) {
-  if (!patch.faces(lamp)) return Spectrum(0.0);
+Spectrum from_luminaire(const PatchSampler& patch, const PlacedLuminaire& luminaire) {
+  if (!patch.faces(luminaire)) return Spectrum(0.0);
   return patch.mean(
-      lamp.mirror, [&](const Vec3& p, const Vec3& q) { return open_irradiance(lamp, q, p, patch.normal()); },
-      [&](const Vec3& p, double u, double v) { return light_point(lamp, p, u, v); },
-      opening_rays(lamp, patch.centre()) > 4);
+      luminaire.mirror, [&](const Vec3& p, const Vec3& q) { return open_irradiance(luminaire, q, p, patch.normal()); },
+      [&](const Vec3& p, double u, double v) { return light_point(luminaire, p, u, v); },
+      opening_rays(luminaire, patch.centre()) > 4);
 }
 
 /// The luminaires over one patch. Those that give much of its light are looked at one by one; the others, however many,
 /// share the rays of one, each ray to a lamp chosen in proportion to what it can give.
-Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
+Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
   constexpr std::size_t kFew = 4;    // lamps that need no choice
   constexpr double kMuch = 1.0 / 6;  // of what all can give
   Spectrum E(0.0);
   if (lights.luminaires.size() <= kFew) {
-    for (const PlacedLuminaire& lamp : lights.luminaires) E += from_lamp(patch, lamp);
+    for (const PlacedLuminaire& luminaire : lights.luminaires) E += from_luminaire(patch, luminaire);
     return E;
   }
   struct Over {
@@ -150,39 +151,40 @@ Spectrum from_lamps(const Lights& lights, const PatchSampler& patch) {
   over.clear();
   double all = 0;
   for (std::uint32_t number = 0; number < lights.luminaires.size(); ++number) {
-    const Luminaire& lamp = lights.luminaires[number];
-    const double gives = patch.estimate(lamp);
-    if (gives > 0) over.push_back({number, gives, opening_rays(lamp, patch.centre()) > 4});
+    const Luminaire& luminaire = lights.luminaires[number];
+    const double gives = patch.estimate(luminaire);
+    if (gives > 0) over.push_back({number, gives, opening_rays(luminaire, patch.centre()) > 4});
     all += gives;
   }
   bool wide = false;
   double shared = 0;  // becomes the running sum over lamps that share rays
   std::size_t kept = 0;
-  for (const Over& lamp : over) {
-    if (lamp.gives > kMuch * all) {
-      E += from_lamp(patch, lights.luminaires[lamp.number]);
+  for (const Over& luminaire : over) {
+    if (luminaire.gives > kMuch * all) {
+      E += from_luminaire(patch, lights.luminaires[luminaire.number]);
     } else {
-      shared += lamp.gives;
-      wide = wide || lamp.wide;
-      over[kept++] = {lamp.number, shared, false};
+      shared += luminaire.gives;
+      wide = wide || luminaire.wide;
+      over[kept++] = {luminaire.number, shared, false};
     }
   }
   over.resize(kept);
   if (!(shared > 0)) return E;
   const auto chosen = [&](double pick) {
     const auto at = std::upper_bound(over.begin(), over.end(), pick * shared,
-                                     [](double x, const Over& lamp) { return x < lamp.gives; });
+                                     [](double x, const Over& luminaire) { return x < luminaire.gives; });
     return static_cast<std::size_t>(std::min(at, over.end() - 1) - over.begin());
   };
-  return E + patch.mean_of_choice(
-                 [&](const Vec3& p, double u, double v, const auto& pick) {
-                   const std::size_t k = chosen(pick());
-                   const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
-                   const PlacedLuminaire& lamp = lights.luminaires[over[k].number];
-                   const Vec3 q = light_point(lamp, p, u, v);
-                   return Shown{q, open_irradiance(lamp, q, p, patch.normal()) / probability, lamp.mirror};
-                 },
-                 wide);
+  return E +
+         patch.mean_of_choice(
+             [&](const Vec3& p, double u, double v, const auto& pick) {
+               const std::size_t k = chosen(pick());
+               const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
+               const PlacedLuminaire& luminaire = lights.luminaires[over[k].number];
+               const Vec3 q = light_point(luminaire, p, u, v);
+               return ShadowTry{q, open_irradiance(luminaire, q, p, patch.normal()) / probability, luminaire.mirror};
+             },
+             wide);
 }
 
 Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, double far_away) {
@@ -260,28 +262,28 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
 }
 
 /// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
-EnergyBalance balance(const Problem& problem, const PlacedLuminaire& lamp, std::uint32_t rays, std::uint64_t key) {
-  if (lamp.mirror != kNoMirror) return {};  // mirrors turn the lamp's own rays
+EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, std::uint32_t rays, std::uint64_t key) {
+  if (luminaire.mirror != kNoMirror) return {};  // mirrors turn the lamp's own rays
   double sent = 0, arrived = 0, escaped = 0;
   for (std::uint32_t k = 0; k < rays; ++k) {
     const auto u = sobol4(k, key);
     const Vec3 d = sphere_direction(u[0], u[1]);
-    const double I = luminous_mean(intensity(lamp, d));
+    const double I = luminous_mean(intensity(luminaire, d));
     if (!(I > 0)) continue;
     const double lift = 20 * problem.rays.lift();
     const Hit hit =
-        problem.rays.first_hit(problem.patches, {light_point(lamp, lamp.position, u[2], u[3]) + d * lift, d});
+        problem.rays.first_hit(problem.patches, {light_point(luminaire, luminaire.position, u[2], u[3]) + d * lift, d});
     sent += I;
     if (hit.escaped()) escaped += I * luminous_mean(hit.transmittance);
     if (hit.patch.valid()) arrived += I * luminous_mean(hit.transmittance);
   }
-  const double flux = luminous_mean(power(lamp));
+  const double flux = luminous_mean(power(luminaire));
   if (!(sent > 0)) return {.emitted = flux};
   return {.emitted = flux, .absorbed = flux * (sent - arrived - escaped) / sent, .escaped = flux * escaped / sent};
 }
 
 /// Many lamps share the rays of four.
-void balance_lamps(const Problem& problem, DirectLight& direct, const DirectOptions& options) {
+void balance_luminaires(const Problem& problem, DirectLight& direct, const DirectOptions& options) {
   const std::size_t count = problem.lights.luminaires.size();
   if (count == 0) return;
   const auto rays = static_cast<std::uint32_t>(std::clamp<std::size_t>((1 << 16) / count, 512, 1 << 14));
@@ -316,7 +318,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   if (has_openings) direct.E_openings = Field(n, problem.patches.channels);
   const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
     const PatchSampler patch(problem, i, spend);
-    const Spectrum lamps = from_lamps(lights, patch);
+    const Spectrum luminaires = from_luminaires(lights, patch);
     Spectrum sky(0.0);
     for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
     if (has_openings) {
@@ -326,13 +328,13 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     }
     if (!light.sky.dark() && spend.sky_rays > 0)
       sky += from_sky(light, i, spend, has_openings ? looked_at[i] : std::vector<std::uint32_t>{});
-    direct.E.set(i, lamps + sky);
+    direct.E.set(i, luminaires + sky);
     daylight[i] = luminous_mean(sky) * problem.patches.area[i];
   };
   if (options.rough_first && monitor.deadline != Monitor{}.deadline) {
     // Time may run out below: no patch shall stay dark for that.
     const DirectOptions rough{
-        .lamp_rays = 16, .edge_rays = 16, .sky_rays = std::min(16, options.sky_rays), .seed = options.seed};
+        .shadow_rays = 16, .edge_rays = 16, .sky_rays = std::min(16, options.sky_rays), .seed = options.seed};
     parallel_for(n, 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) light_patch(i, rough);
     });
@@ -353,9 +355,9 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     }
     direct.rays += direct.openings.number.size() * static_cast<std::size_t>(kRaysOfOpening);
   }
-  direct.rays += n * static_cast<std::size_t>(options.lamp_rays) * (lights.luminaires.size() + lights.suns.size());
+  direct.rays += n * static_cast<std::size_t>(options.shadow_rays) * (lights.luminaires.size() + lights.suns.size());
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
-  balance_lamps(problem, direct, options);
+  balance_luminaires(problem, direct, options);
   return direct;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // The lights of a problem, ready to be sampled.
 
+#include "solver/illumination/bright_areas.h"
 #include "solver/illumination/light_sampler.h"
-#include "solver/illumination/panels.h"
 #include "solver/illumination/problem.h"
 #include "solver/lights/sky.h"
 #include "solver/openings/opening_sampler.h"
@@ -11,24 +11,24 @@ namespace clerestory {
 
 struct Illumination {
   const Problem& problem;
-  LightSampler lamps;
+  LightSampler sampler;
   SkyRadiance sky;
   OpeningSampler openings;
-  Panels panels{};  ///< for a gather; see look_at_panels()
+  BrightAreas bright_areas{};  ///< for a gather; see look_at_bright_areas()
 
   explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}
   /// glow: see LightSampler; outlives this.
   Illumination(const Problem& p, const Field& glow)
-      : problem(p), lamps(p, glow), sky(p.lights), openings(p.lights.openings, p.rays.diameter()) {}
+      : problem(p), sampler(p, glow), sky(p.lights), openings(p.lights.openings, p.rays.diameter()) {}
   /// Lets a gather look at bright patches that lie together as one.
-  void look_at_panels() { panels = find_panels(problem.patches, lamps); }
+  void look_at_bright_areas() { bright_areas = find_bright_areas(problem.patches, sampler); }
 };
 
 /// For a final gather from the radiosity B (N x channels) of all patches, which outlives it: reflected light is looked
 /// up, so what is bright by reflection is a lamp like others.
 inline Illumination gather_illumination(const Problem& problem, const Field& B) {
   Illumination light(problem, B);
-  light.look_at_panels();
+  light.look_at_bright_areas();
   return light;
 }
 

@@ -73,39 +73,39 @@ LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_
   patches_ = LightTree(light_bounds, Falloff::cosine, extent);
 
   light_bounds.clear();
-  for (const Luminaire& lamp : lights.luminaires) {
-    light_bounds.push_back(bounds(lamp));
-    lamps_power_ += luminous_mean(power(lamp));
+  for (const Luminaire& luminaire : lights.luminaires) {
+    light_bounds.push_back(bounds(luminaire));
+    luminaires_power_ += luminous_mean(power(luminaire));
   }
-  if (lamps_power_ > 0) lamps_ = LightTree(light_bounds, Falloff::none, extent);
+  if (luminaires_power_ > 0) luminaires_ = LightTree(light_bounds, Falloff::none, extent);
   for (const Sun& sun : lights.suns) suns_power_ += luminous_mean(sun.normal_irradiance) * cross_section(problem.rays);
 }
 
 LightSampler::Shares LightSampler::shares(const Vec3& p, const Vec3& n) const {
-  if (lamps_power_ == 0 && suns_power_ == 0) return {1, 0, 0};
+  if (luminaires_power_ == 0 && suns_power_ == 0) return {1, 0, 0};
   Shares s;
   if (patches_.reaches(p, n)) s.patches = patches_power_;
-  if (lamps_power_ > 0 && lamps_.reaches(p, n)) s.lamps = lamps_power_;
+  if (luminaires_power_ > 0 && luminaires_.reaches(p, n)) s.luminaires = luminaires_power_;
   for (const Sun& sun : problem_.lights.suns)
     if (dot(n, sun.direction) > -0.01) s.suns = suns_power_;  // the disc is half a degree wide
-  const double sum = s.patches + s.lamps + s.suns;
+  const double sum = s.patches + s.luminaires + s.suns;
   if (!(sum > 0)) return {};
   // Half of the choice is even: power says little about a lamp indoors beside a sun that does not get in.
-  const int groups = (s.patches > 0) + (s.lamps > 0) + (s.suns > 0);
-  for (double* share : {&s.patches, &s.lamps, &s.suns})
+  const int groups = (s.patches > 0) + (s.luminaires > 0) + (s.suns > 0);
+  for (double* share : {&s.patches, &s.luminaires, &s.suns})
     if (*share > 0) *share = (*share / sum + 1.0 / groups) / 2;
   return s;
 }
 
 LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, double u, double v,
-                                 bool emitters_only) const {
-  if (emitters_only) return on_patch(p, n, pick, u, v, 1);
+                                 bool bright_patches_only) const {
+  if (bright_patches_only) return on_patch(p, n, pick, u, v, 1);
   const Shares s = shares(p, n);
-  const double lamps_end = s.patches + s.lamps;
+  const double luminaires_end = s.patches + s.luminaires;
   if (pick < s.patches) return on_patch(p, n, pick / s.patches, u, v, s.patches);
-  if (s.lamps > 0 && (pick < lamps_end || !(s.suns > 0)))
-    return on_lamp(p, n, (pick - s.patches) / s.lamps, u, v, s.lamps);
-  if (s.suns > 0) return on_sun(p, n, (pick - lamps_end) / s.suns, u, v, s.suns);
+  if (s.luminaires > 0 && (pick < luminaires_end || !(s.suns > 0)))
+    return on_luminaire(p, n, (pick - s.patches) / s.luminaires, u, v, s.luminaires);
+  if (s.suns > 0) return on_sun(p, n, (pick - luminaires_end) / s.suns, u, v, s.suns);
   return s.patches > 0 ? on_patch(p, n, pick, u, v, s.patches) : LightSample{};
 }
 
@@ -124,13 +124,15 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
           probability * r2 / (cos_q * area), q};
 }
 
-LightSample LightSampler::on_lamp(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
-  const LightTree::Choice choice = lamps_.choose(p, n, pick);
+LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v,
+                                       double share) const {
+  const LightTree::Choice choice = luminaires_.choose(p, n, pick);
   if (!(choice.probability > 0)) return {};
-  const PlacedLuminaire& lamp = problem_.lights.luminaires[choice.light];
-  const Vec3 q = light_point(lamp, p, u, v);
+  const PlacedLuminaire& luminaire = problem_.lights.luminaires[choice.light];
+  const Vec3 q = light_point(luminaire, p, u, v);
   const double probability = share * choice.probability;
-  return {short_of(q, p, problem_.rays.lift()), open_irradiance(lamp, q, p, n) / probability, 0, {}, lamp.mirror};
+  return {
+      short_of(q, p, problem_.rays.lift()), open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.mirror};
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
@@ -151,19 +153,20 @@ LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, doub
 }
 
 double LightSampler::density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
-                             bool emitters_only) const {
+                             bool bright_patches_only) const {
   if (!(cos_q > 0)) return 0;
-  const double share = emitters_only ? 1.0 : shares(p, n).patches;
+  const double share = bright_patches_only ? 1.0 : shares(p, n).patches;
   return share * patches_.probability(number_of_patch_[q], p, n) * distance * distance /
          (cos_q * problem_.patches.area[q]);
 }
 
-double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool emitters_only) const {
-  if (hit.reflected || !hit.patch.valid() || !is_explicit(hit.patch)) return 0;
-  return density(hit.patch, p, n, hit.distance, -dot(problem_.patches.normal[hit.patch], d), emitters_only);
+double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d,
+                             bool bright_patches_only) const {
+  if (hit.reflected || !hit.patch.valid() || !is_bright(hit.patch)) return 0;
+  return density(hit.patch, p, n, hit.distance, -dot(problem_.patches.normal[hit.patch], d), bright_patches_only);
 }
 
-Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const {
+Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const {
   const RayScene& rays = problem_.rays;
   Spectrum E(0.0);
   auto shadows = shadow_rays<Spectrum>(rays, [&](const Spectrum& irradiance, const Vec3& from, const Vec3& to) {
@@ -178,17 +181,17 @@ Spectrum LightSampler::small_lights(const Vec3& p, const Vec3& n, int sun_rays, 
   };
   // In the tree's order lamps that share a packet are neighbours.
   const double lift = rays.lift();
-  for (const std::uint32_t number : lamps_.order()) {
-    const PlacedLuminaire& lamp = problem_.lights.luminaires[number];
-    const int count = opening_rays(lamp, p);
+  for (const std::uint32_t number : luminaires_.order()) {
+    const PlacedLuminaire& luminaire = problem_.lights.luminaires[number];
+    const int count = opening_rays(luminaire, p);
     if (count == 1) {
-      look(short_of(lamp.position, p, lift), open_irradiance(lamp, p, n), lamp.mirror);
+      look(short_of(luminaire.position, p, lift), open_irradiance(luminaire, p, n), luminaire.mirror);
       continue;
     }
     for (int k = 0; k < count; ++k) {
-      const OpeningPlace at = opening_place(lamp, k, count);
-      const Vec3 q = light_point(lamp, p, at.u, at.v);
-      look(short_of(q, p, lift), open_irradiance(lamp, q, p, n) * at.weight, lamp.mirror);
+      const OpeningPlace at = opening_place(luminaire, k, count);
+      const Vec3 q = light_point(luminaire, p, at.u, at.v);
+      look(short_of(q, p, lift), open_irradiance(luminaire, q, p, n) * at.weight, luminaire.mirror);
     }
   }
   shadows.trace();

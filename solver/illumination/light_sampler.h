@@ -29,41 +29,42 @@ class LightSampler {
   ///       B for a gather, where the sun's patch on the floor is as much of a lamp as the lamp. Outlives the sampler.
   LightSampler(const Problem& problem, const Field& glow);
 
-  bool empty() const { return bright_.empty() && lamps_.empty() && suns_power_ == 0; }
-  bool has_emitters() const { return !bright_.empty(); }
+  bool empty() const { return bright_.empty() && luminaires_.empty() && suns_power_ == 0; }
+  bool has_bright_patches() const { return !bright_.empty(); }
   const Field& glow() const { return glow_; }
-  bool is_explicit(PatchId p) const { return has_emitters() && number_of_patch_[p] != LightTree::kNone; }
+  bool is_bright(PatchId p) const { return has_bright_patches() && number_of_patch_[p] != LightTree::kNone; }
 
   /// Light chosen by `pick` in [0, 1), and the point (u, v) of it, for receiver point p with normal n. Glowing patches
-  /// only when `emitters_only`; otherwise patches, luminaires and suns share the choice by their power first.
-  LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool emitters_only) const;
+  /// only when `bright_patches_only`; otherwise patches, luminaires and suns share the choice by their power first.
+  LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool bright_patches_only) const;
 
   /// Density per solid angle with which sample() would choose, at p with normal n, the direction that ends on the
   /// explicit patch q at `distance`, `cos_q` being the cosine there.
-  double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q, bool emitters_only) const;
+  double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
+                 bool bright_patches_only) const;
 
   /// The same where a ray from p along d (unit) ends; 0 when that is no bright patch that shadow rays look for.
-  double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool emitters_only) const;
+  double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const;
 
   /// Irradiance at p of luminaires and of the sun: a shadow ray to each lamp, more to openings that are near, sun_rays
   /// to each sun.
-  Spectrum small_lights(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
+  Spectrum delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
 
  private:
   struct Shares {
-    double patches = 0, lamps = 0, suns = 0;  ///< probabilities, sum 1
+    double patches = 0, luminaires = 0, suns = 0;  ///< probabilities, sum 1
   };
   Shares shares(const Vec3& p, const Vec3& n) const;
   LightSample on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
-  LightSample on_lamp(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+  LightSample on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
   LightSample on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
 
   const Problem& problem_;
   const Field& glow_;
-  LightTree patches_, lamps_;                                    ///< of bright_; of all luminaires, by number
-  std::vector<std::uint32_t> bright_;                            ///< patches sampled like lights
-  std::vector<std::uint32_t> number_of_patch_;                   ///< N, number in bright_ or kNone; empty without any
-  double patches_power_ = 0, lamps_power_ = 0, suns_power_ = 0;  ///< [W]
+  LightTree patches_, luminaires_;              ///< of bright_; of all luminaires, by number
+  std::vector<std::uint32_t> bright_;           ///< patches sampled like lights
+  std::vector<std::uint32_t> number_of_patch_;  ///< N, number in bright_ or kNone; empty without any
+  double patches_power_ = 0, luminaires_power_ = 0, suns_power_ = 0;  ///< [W]
 };
 
 }  // namespace clerestory

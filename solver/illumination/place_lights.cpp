@@ -23,9 +23,9 @@ void add_images(Lights& lights, const std::vector<MirrorPlane>& mirrors) {
 Lights to_local_frame(const LightSpec& spec, const Vec3& origin) {
   Lights lights;
   lights.sky = spec.sky;
-  for (Luminaire lamp : spec.luminaires) {
-    lamp.position -= origin;
-    lights.luminaires.push_back({std::move(lamp)});
+  for (Luminaire luminaire : spec.luminaires) {
+    luminaire.position -= origin;
+    lights.luminaires.push_back({std::move(luminaire)});
   }
   for (const Sun& sun : spec.suns) lights.suns.push_back({sun});
   return lights;

@@ -18,80 +18,80 @@ concept HasOpening = requires(const Kind& kind, const Vec3& p) {
 };
 
 /// What r2 counts as at least [m2].
-double least_r2(const Luminaire& lamp) {
+double least_r2(const Luminaire& luminaire) {
   return std::visit(
       [](const auto& kind) {
         if constexpr (HasOpening<decltype(kind)>) return least_r2(kind);
         return 0.0;
       },
-      lamp.kind);
+      luminaire.kind);
 }
 
 }  // namespace
 
-Spectrum intensity(const Luminaire& lamp, const Vec3& d) {
-  return std::visit([&](const auto& kind) { return intensity(kind, d); }, lamp.kind);
+Spectrum intensity(const Luminaire& luminaire, const Vec3& d) {
+  return std::visit([&](const auto& kind) { return intensity(kind, d); }, luminaire.kind);
 }
 
-Spectrum power(const Luminaire& lamp) {
-  return std::visit([](const auto& kind) { return power(kind); }, lamp.kind);
+Spectrum power(const Luminaire& luminaire) {
+  return std::visit([](const auto& kind) { return power(kind); }, luminaire.kind);
 }
 
-LightBounds bounds(const Luminaire& lamp) {
-  return std::visit([&](const auto& kind) { return bounds(kind, lamp.position); }, lamp.kind);
+LightBounds bounds(const Luminaire& luminaire) {
+  return std::visit([&](const auto& kind) { return bounds(kind, luminaire.position); }, luminaire.kind);
 }
 
-Luminaire image_of(Luminaire lamp, const MirrorPlane& mirror) {
-  lamp.position = mirror.image_of(lamp.position);
-  std::visit([&](auto& kind) { turn_into_image(kind, mirror); }, lamp.kind);
-  return lamp;
+Luminaire image_of(Luminaire luminaire, const MirrorPlane& mirror) {
+  luminaire.position = mirror.image_of(luminaire.position);
+  std::visit([&](auto& kind) { turn_into_image(kind, mirror); }, luminaire.kind);
+  return luminaire;
 }
 
-double reach(const Luminaire& lamp) {
+double reach(const Luminaire& luminaire) {
   return std::visit(
       [](const auto& kind) {
         if constexpr (HasOpening<decltype(kind)>) return reach(kind);
         return 0.0;
       },
-      lamp.kind);
+      luminaire.kind);
 }
 
-int opening_rays(const Luminaire& lamp, const Vec3& p) {
+int opening_rays(const Luminaire& luminaire, const Vec3& p) {
   return std::visit(
       [&](const auto& kind) {
-        if constexpr (HasOpening<decltype(kind)>) return opening_rays(kind, lamp.position, p);
+        if constexpr (HasOpening<decltype(kind)>) return opening_rays(kind, luminaire.position, p);
         return 1;
       },
-      lamp.kind);
+      luminaire.kind);
 }
 
-OpeningPlace opening_place(const Luminaire& lamp, int k, int count) {
+OpeningPlace opening_place(const Luminaire& luminaire, int k, int count) {
   return std::visit(
       [&](const auto& kind) {
         if constexpr (HasOpening<decltype(kind)>) return opening_place(kind, k, count);
         return OpeningPlace{};
       },
-      lamp.kind);
+      luminaire.kind);
 }
 
-Vec3 light_point(const Luminaire& lamp, const Vec3& p, double u, double v) {
+Vec3 light_point(const Luminaire& luminaire, const Vec3& p, double u, double v) {
   return std::visit(
       [&](const auto& kind) {
-        if constexpr (HasOpening<decltype(kind)>) return light_point(kind, lamp.position, p, u, v);
-        return lamp.position;
+        if constexpr (HasOpening<decltype(kind)>) return light_point(kind, luminaire.position, p, u, v);
+        return luminaire.position;
       },
-      lamp.kind);
+      luminaire.kind);
 }
 
-Spectrum open_irradiance(const Luminaire& lamp, const Vec3& q, const Vec3& p, const Vec3& n) {
-  const Vec3 to_lamp = q - p;
-  const double r2 = dot(to_lamp, to_lamp), r = std::sqrt(r2), cos_r = dot(n, to_lamp);
+Spectrum open_irradiance(const Luminaire& luminaire, const Vec3& q, const Vec3& p, const Vec3& n) {
+  const Vec3 to_luminaire = q - p;
+  const double r2 = dot(to_luminaire, to_luminaire), r = std::sqrt(r2), cos_r = dot(n, to_luminaire);
   if (!(cos_r > 0)) return Spectrum(0.0);
-  return intensity(lamp, to_lamp / -r) * (cos_r / (std::max(r2, least_r2(lamp)) * r));
+  return intensity(luminaire, to_luminaire / -r) * (cos_r / (std::max(r2, least_r2(luminaire)) * r));
 }
 
-Spectrum open_irradiance(const Luminaire& lamp, const Vec3& p, const Vec3& n) {
-  return open_irradiance(lamp, lamp.position, p, n);
+Spectrum open_irradiance(const Luminaire& luminaire, const Vec3& p, const Vec3& n) {
+  return open_irradiance(luminaire, luminaire.position, p, n);
 }
 
 Vec3 short_of(const Vec3& q, const Vec3& p, double lift) {

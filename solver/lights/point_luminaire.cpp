@@ -6,12 +6,12 @@
 
 namespace clerestory {
 
-Spectrum intensity(const PointLuminaire& lamp, const Vec3&) { return lamp.power / (4 * std::numbers::pi); }
+Spectrum intensity(const PointLuminaire& luminaire, const Vec3&) { return luminaire.power / (4 * std::numbers::pi); }
 
-Spectrum power(const PointLuminaire& lamp) { return lamp.power; }
+Spectrum power(const PointLuminaire& luminaire) { return luminaire.power; }
 
-LightBounds bounds(const PointLuminaire& lamp, const Vec3& position) {
-  return {position, position, {}, std::numbers::pi, luminous_mean(intensity(lamp, {}))};
+LightBounds bounds(const PointLuminaire& luminaire, const Vec3& position) {
+  return {position, position, {}, std::numbers::pi, luminous_mean(intensity(luminaire, {}))};
 }
 
 }  // namespace clerestory

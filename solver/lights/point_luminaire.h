@@ -8,10 +8,10 @@
 namespace clerestory {
 
 /// Intensity [W/sr] towards the unit direction d.
-Spectrum intensity(const PointLuminaire& lamp, const Vec3& d);
+Spectrum intensity(const PointLuminaire& luminaire, const Vec3& d);
 /// Total flux [W].
-Spectrum power(const PointLuminaire& lamp);
-LightBounds bounds(const PointLuminaire& lamp, const Vec3& position);
+Spectrum power(const PointLuminaire& luminaire);
+LightBounds bounds(const PointLuminaire& luminaire, const Vec3& position);
 /// A mirror shows it as it is.
 inline void turn_into_image(PointLuminaire&, const MirrorPlane&) {}
 

@@ -9,10 +9,10 @@ namespace clerestory {
 
 /// Intensity [W/sr] towards the unit direction d: full inside the inner cone, none outside the outer one, between them
 /// as glTF KHR_lights_punctual says: the square of a ramp in the cosine.
-Spectrum intensity(const SpotLuminaire& lamp, const Vec3& d);
+Spectrum intensity(const SpotLuminaire& luminaire, const Vec3& d);
 /// Total flux [W].
-Spectrum power(const SpotLuminaire& lamp);
-LightBounds bounds(const SpotLuminaire& lamp, const Vec3& position);
-void turn_into_image(SpotLuminaire& lamp, const MirrorPlane& mirror);
+Spectrum power(const SpotLuminaire& luminaire);
+LightBounds bounds(const SpotLuminaire& luminaire, const Vec3& position);
+void turn_into_image(SpotLuminaire& luminaire, const MirrorPlane& mirror);
 
 }  // namespace clerestory

@@ -22,71 +22,71 @@ struct Face {
   Vec3 along_a, along_b;
   bool round;
 };
-Face face(const WebLuminaire& lamp) {
-  const auto& [size, round] = lamp.web->opening;
-  const auto& [x, y, z] = lamp.axes;
+Face face(const WebLuminaire& luminaire) {
+  const auto& [size, round] = luminaire.web->opening;
+  const auto& [x, y, z] = luminaire.axes;
   if (size.z <= std::min(size.x, size.y)) return {size.x, size.y, x, y, round};
   return size.x >= size.y ? Face{size.x, size.z, x, z, false} : Face{size.y, size.z, y, z, false};
 }
 
-Vec3 to_lamp_frame(const WebLuminaire& lamp, const Vec3& d) {
-  return {dot(d, lamp.axes.x), dot(d, lamp.axes.y), dot(d, lamp.axes.z)};
+Vec3 to_luminaire_frame(const WebLuminaire& luminaire, const Vec3& d) {
+  return {dot(d, luminaire.axes.x), dot(d, luminaire.axes.y), dot(d, luminaire.axes.z)};
 }
 
-bool is_near(const WebLuminaire& lamp, const Vec3& position, const Vec3& p) {
-  const double near = kNear * largest_length(lamp.web->opening.size);
+bool is_near(const WebLuminaire& luminaire, const Vec3& position, const Vec3& p) {
+  const double near = kNear * largest_length(luminaire.web->opening.size);
   const Vec3 d = p - position;
   return dot(d, d) < near * near;
 }
 
 }  // namespace
 
-Spectrum intensity(const WebLuminaire& lamp, const Vec3& d) {
-  return lamp.scale * candela_towards(*lamp.web, to_lamp_frame(lamp, d));
+Spectrum intensity(const WebLuminaire& luminaire, const Vec3& d) {
+  return luminaire.scale * candela_towards(*luminaire.web, to_luminaire_frame(luminaire, d));
 }
 
-Spectrum power(const WebLuminaire& lamp) { return lamp.scale * lamp.web->flux; }
+Spectrum power(const WebLuminaire& luminaire) { return luminaire.scale * luminaire.web->flux; }
 
-LightBounds bounds(const WebLuminaire& lamp, const Vec3& position) {
-  const auto& [x, y, z] = lamp.axes;
-  const Vec3 half = lamp.web->opening.size / 2;
+LightBounds bounds(const WebLuminaire& luminaire, const Vec3& position) {
+  const auto& [x, y, z] = luminaire.axes;
+  const Vec3 half = luminaire.web->opening.size / 2;
   const auto along = [&](int axis) {
     return std::abs(x[axis]) * half.x + std::abs(y[axis]) * half.y + std::abs(z[axis]) * half.z;
   };
   const Vec3 box{along(0), along(1), along(2)};
-  const double cone = beam_half_angle(*lamp.web);
+  const double cone = beam_half_angle(*luminaire.web);
   return {position - box, position + box, cone < std::numbers::pi ? -z : Vec3{}, cone,
-          luminous_mean(lamp.scale) * peak_candela(*lamp.web)};
+          luminous_mean(luminaire.scale) * peak_candela(*luminaire.web)};
 }
 
-void turn_into_image(WebLuminaire& lamp, const MirrorPlane& mirror) {
-  for (Vec3* axis : {&lamp.axes.x, &lamp.axes.y, &lamp.axes.z}) *axis = mirror.image_of_direction(*axis);
+void turn_into_image(WebLuminaire& luminaire, const MirrorPlane& mirror) {
+  for (Vec3* axis : {&luminaire.axes.x, &luminaire.axes.y, &luminaire.axes.z}) *axis = mirror.image_of_direction(*axis);
 }
 
-double reach(const WebLuminaire& lamp) {
-  const Face f = face(lamp);
+double reach(const WebLuminaire& luminaire) {
+  const Face f = face(luminaire);
   return std::hypot(f.a, f.b) / 2;
 }
 
-int opening_rays(const WebLuminaire& lamp, const Vec3& position, const Vec3& p) {
-  if (!is_near(lamp, position, p)) return 1;
-  const Vec3 at = to_lamp_frame(lamp, p - position), half = lamp.web->opening.size / 2;
+int opening_rays(const WebLuminaire& luminaire, const Vec3& position, const Vec3& p) {
+  if (!is_near(luminaire, position, p)) return 1;
+  const Vec3 at = to_luminaire_frame(luminaire, p - position), half = luminaire.web->opening.size / 2;
   const auto beside = [](double x, double limit) { return std::max(0.0, std::abs(x) - limit); };
   const double gap = length({beside(at.x, half.x), beside(at.y, half.y), beside(at.z, half.z)});
-  const double size = largest_length(lamp.web->opening.size);
+  const double size = largest_length(luminaire.web->opening.size);
   const Vec3 d = p - position;
   if (dot(d, d) >= 25 * size * size) return 4;
   return gap >= size ? 16 : gap >= size / 2 ? 64 : 256;
 }
 
-OpeningPlace opening_place(const WebLuminaire& lamp, int k, int count) {
+OpeningPlace opening_place(const WebLuminaire& luminaire, int k, int count) {
   static const GaussLegendre<1> one;
   static const GaussLegendre<2> two;
   static const GaussLegendre<4> four;
   static const GaussLegendre<8> eight;
   static const GaussLegendre<16> sixteen;
   static const GaussLegendre<32> thirty_two;
-  const Face f = face(lamp);
+  const Face f = face(luminaire);
   const auto place = [&](const auto& across, const auto& along) -> OpeningPlace {
     const std::size_t n = along.node.size(), i = static_cast<std::size_t>(k) / n, j = static_cast<std::size_t>(k) % n;
     const double x = (1 + across.node[i]) / 2, y = (1 + along.node[j]) / 2, turn = 1.0 / static_cast<double>(n);
@@ -109,9 +109,9 @@ OpeningPlace opening_place(const WebLuminaire& lamp, int k, int count) {
   }
 }
 
-Vec3 light_point(const WebLuminaire& lamp, const Vec3& position, const Vec3& p, double u, double v) {
-  if (!is_near(lamp, position, p)) return position;
-  const Face f = face(lamp);
+Vec3 light_point(const WebLuminaire& luminaire, const Vec3& position, const Vec3& p, double u, double v) {
+  if (!is_near(luminaire, position, p)) return position;
+  const Face f = face(luminaire);
   double a = u - 0.5, b = v - 0.5;
   if (f.round) {
     const double r = std::sqrt(u) / 2, phi = 2 * std::numbers::pi * v;
@@ -120,8 +120,8 @@ Vec3 light_point(const WebLuminaire& lamp, const Vec3& position, const Vec3& p, 
   return position + f.along_a * (f.a * a) + f.along_b * (f.b * b);
 }
 
-double least_r2(const WebLuminaire& lamp) {
-  const Face f = face(lamp);
+double least_r2(const WebLuminaire& luminaire) {
+  const Face f = face(luminaire);
   const double strip = std::max(f.a, f.b) / kSmallestShare;  // of an opening that is no more than a line
   return std::max(f.a * f.b / (kSmallestShare * std::numbers::pi), strip * strip);
 }

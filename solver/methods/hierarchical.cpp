@@ -31,7 +31,7 @@ constexpr double kMostRays = 1.5e7;
 /// Scenes of few elements cost next to nothing, and their energy would hang on few rays: they get more of them.
 constexpr std::size_t kFewLeaves = 1500;
 constexpr int kMostOfOne = 1024;
-constexpr double kGroundLevel = 0.1;  // share of a space's area that is no brighter than its ground level
+constexpr double kDarkestShare = 0.1;  // share of a space's area that is no brighter than its ground level
 
 /// Quality of one round: thresholds fall from round to round.
 struct Quality {
@@ -41,20 +41,20 @@ struct Quality {
 };
 
 Quality coarse(const HierarchyOptions& o) {
-  return {{.bundle_rays = std::max(32, o.bundle_rays / 4), .lamp_rays = 16, .uniform = 0.02, .seed = o.seed + 1},
-          {.lamp_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
+  return {{.bundle_rays = std::max(32, o.bundle_rays / 4), .bright_rays = 16, .uniform = 0.02, .seed = o.seed + 1},
+          {.shadow_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
           1e-3};
 }
 Quality full(const HierarchyOptions& o, std::size_t leaves) {
-  int bundle = o.bundle_rays, pairs = o.lamp_rays;
+  int bundle = o.bundle_rays, pairs = o.bright_rays;
   for (std::size_t n = leaves; n < kFewLeaves && bundle < kMostOfOne; n *= 2) bundle *= 2, pairs *= 2;
-  return {{.bundle_rays = bundle, .lamp_rays = pairs, .seed = o.seed},
-          {.lamp_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
+  return {{.bundle_rays = bundle, .bright_rays = pairs, .seed = o.seed},
+          {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
           o.residual};
 }
 
 bool merges(std::size_t leaves, const LinkOptions& links) {
-  return static_cast<double>(leaves) * (links.bundle_rays + links.lamp_rays) > kLinksToSpare;
+  return static_cast<double>(leaves) * (links.bundle_rays + links.bright_rays) > kLinksToSpare;
 }
 
 /// What one round hands to the next: the light on the leaves as they were.
@@ -95,7 +95,7 @@ Field above_ground(const PatchSet& leaves, const Field& B, const Round& round) {
   std::vector<double> darker(round.spaces, 0.0);
   for (const std::uint32_t i : order) {
     const std::uint32_t s = round.space[i];
-    if (darker[s] < kGroundLevel * area[s]) ground[s] = B[i] * std::pow(rho[s] / area[s], 8);
+    if (darker[s] < kDarkestShare * area[s]) ground[s] = B[i] * std::pow(rho[s] / area[s], 8);
     darker[s] += leaves.area[i];
   }
   Field above(B.size(), B.channels);
@@ -147,7 +147,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   const ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
   const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
-  for (int* rays : {&quality.links.bundle_rays, &quality.links.lamp_rays})
+  for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
@@ -168,7 +168,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   if (!transport.complete) return round;
 
-  out.small_lights = direct.E;
+  out.delta_light = direct.E;
   Field E_direct = direct.E;
   double from_sky = 0, glowing = 0;
   const bool looks_through = quality.direct.sky_rays == 0 && !direct.E_openings.value.empty();
@@ -204,8 +204,8 @@ HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh
   const Problem problem{out.elements, whole.rays, whole.lights};
   const Illumination light(problem);
   const bool late = ambient_only || monitor.should_stop();
-  const DirectLight direct =
-      direct_light(light, {.lamp_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
+  const DirectLight direct = direct_light(
+      light, {.shadow_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
   const Closure closure = measure_closure(problem.patches, problem.rays, late ? 8 : 16, options.seed);
   out.solution = shoot(
       problem, direct, closure,
@@ -277,7 +277,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     log.push_back("stopped early");
   }
   if (shown.size() != mesh.leaf_count()) {  // stopped after more were halved
-    for (Field* f : {&out.small_lights, &out.solution.E, &out.solution.B})
+    for (Field* f : {&out.delta_light, &out.solution.E, &out.solution.B})
       if (!f->value.empty()) *f = inherited(*f, shown, mesh);
     out.elements = mesh.leaf_patches();
   }

@@ -16,7 +16,7 @@ struct HierarchyOptions {
   enum class Oracle { error, bf };
   Oracle oracle = Oracle::error;  ///< bf: classic refinement by flux at stake, to compare
   int bundle_rays = 256;          ///< from each receiver
-  int lamp_rays = 128;            ///< pairs with bright sources from each receiver, a multiple of 16
+  int bright_rays = 128;          ///< pairs with bright sources from each receiver, a multiple of 16
   double tolerance = 0.1;         ///< of an element's irradiance: it is halved while light varies more inside of it [1]
   double shortest_edge = 0;       ///< elements are not halved below this [m]
   double residual = 1e-6;         ///< stop when the flux not yet in balance / emitted flux is below this [1]
@@ -27,9 +27,9 @@ struct HierarchyOptions {
 
 /// The leaf elements, and the light on them.
 struct HierarchicalSolution {
-  PatchSet elements;   ///< ElementMesh::leaf_patches()
-  Field small_lights;  ///< N x channels, direct irradiance of sun and luminaires on each leaf [W/m2]; part of
-                       ///< solution.E; empty when stopped before the first round
+  PatchSet elements;  ///< ElementMesh::leaf_patches()
+  Field delta_light;  ///< N x channels, direct irradiance of sun and luminaires on each leaf [W/m2]; part of
+                      ///< solution.E; empty when stopped before the first round
   Solution solution;
 };
 

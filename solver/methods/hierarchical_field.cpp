@@ -11,22 +11,22 @@ namespace clerestory {
 namespace {
 
 /// Mean of sun and lamp light over leaves of one element, and whether it varies among their corners.
-struct SmallLights {
+struct DeltaLight {
   Spectrum mean;
   bool varies = false;
 };
 
-SmallLights small_lights(const ElementMesh& mesh, std::span<const std::uint32_t> leaves, const VertexField& field) {
+DeltaLight delta_light(const ElementMesh& mesh, std::span<const std::uint32_t> leaves, const VertexField& field) {
   constexpr double kVaries = 0.1;  // less is left to the vertices, which know it as well
-  SmallLights found;
+  DeltaLight found;
   double low = std::numeric_limits<double>::infinity(), high = 0, share = 0;
   for (const std::uint32_t leaf : leaves) {
     const double part = std::ldexp(1.0, -mesh[leaf].level);
     for (const std::uint32_t p : mesh[leaf].point) {
       if (!field.known[p]) return {};
-      const Spectrum lamps = field.small_lights[p];
-      found.mean += lamps * (part / 3);
-      low = std::min(low, luminous_mean(lamps)), high = std::max(high, luminous_mean(lamps));
+      const Spectrum luminaires = field.delta_light[p];
+      found.mean += luminaires * (part / 3);
+      low = std::min(low, luminous_mean(luminaires)), high = std::max(high, luminous_mean(luminaires));
     }
     share += part;
   }
@@ -35,9 +35,9 @@ SmallLights small_lights(const ElementMesh& mesh, std::span<const std::uint32_t>
   return found;
 }
 
-Field without_small_lights(const VertexField& field) {
+Field without_delta_light(const VertexField& field) {
   Field rest = field.E;
-  for (std::size_t k = 0; k < rest.value.size(); ++k) rest.value[k] -= field.small_lights.value[k];
+  for (std::size_t k = 0; k < rest.value.size(); ++k) rest.value[k] -= field.delta_light.value[k];
   return rest;
 }
 
@@ -46,20 +46,20 @@ Field without_small_lights(const VertexField& field) {
 Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
                       const HierarchicalSolution& coarse, const VertexField& field) {
   Field E = leaf_irradiance(mesh, field.E);
-  if (coarse.small_lights.value.empty()) return E;
-  const Field rest = leaf_irradiance(mesh, without_small_lights(field));
+  if (coarse.delta_light.value.empty()) return E;
+  const Field rest = leaf_irradiance(mesh, without_delta_light(field));
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   std::size_t begin = 0;
   for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
     const auto own = std::span(leaves).subspan(begin, mesh.leaves_under(transport_leaves[j]));
-    const SmallLights gathered = small_lights(mesh, own, field);
+    const DeltaLight gathered = delta_light(mesh, own, field);
     for (std::size_t k = 0; k < own.size() && gathered.varies; ++k)
       for (int c = 0; c < E.channels; ++c) {
-        double lamps = 0;
-        for (const std::uint32_t p : mesh[own[k]].point) lamps += field.small_lights.at(p, c) / 3;
+        double luminaires = 0;
+        for (const std::uint32_t p : mesh[own[k]].point) luminaires += field.delta_light.at(p, c) / 3;
         // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
-        const double exact = coarse.small_lights.at(j, c), mean = gathered.mean[c];
-        E.at(begin + k, c) = rest.at(begin + k, c) + (mean > 0 ? lamps * exact / mean : exact);
+        const double exact = coarse.delta_light.at(j, c), mean = gathered.mean[c];
+        E.at(begin + k, c) = rest.at(begin + k, c) + (mean > 0 ? luminaires * exact / mean : exact);
       }
     begin += own.size();
   }
@@ -71,21 +71,20 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
 /// other. What differs by more is no such error, and stays.
 void correct_flux(const HierarchicalSolution& coarse, const Field& E, const ElementMesh& mesh, VertexField& field) {
   constexpr double kMost = 0.01;
-  if (!field.complete || coarse.small_lights.value.empty()) return;
+  if (!field.complete || coarse.delta_light.value.empty()) return;
   if (std::find(field.known.begin(), field.known.end(), false) != field.known.end()) return;
-  const Field rest = without_small_lights(field);
+  const Field rest = without_delta_light(field);
   const Field on_leaves = leaf_irradiance(mesh, rest);
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   for (int c = 0; c < rest.channels; ++c) {
     double found = 0, exact = 0;
     for (std::size_t j = 0; j < coarse.elements.patch_count(); ++j)
-      exact += coarse.elements.area[j] * (E.at(j, c) - coarse.small_lights.at(j, c));
+      exact += coarse.elements.area[j] * (E.at(j, c) - coarse.delta_light.at(j, c));
     for (std::size_t i = 0; i < leaves.size(); ++i)
       found += std::ldexp(mesh.patches().area[mesh[leaves[i]].patch], -mesh[leaves[i]].level) * on_leaves.at(i, c);
     const double ratio = found > 0 ? exact / found : 1;
     if (std::abs(ratio - 1) > kMost) continue;
-    for (std::size_t p = 0; p < rest.size(); ++p)
-      field.E.at(p, c) = field.small_lights.at(p, c) + ratio * rest.at(p, c);
+    for (std::size_t p = 0; p < rest.size(); ++p) field.E.at(p, c) = field.delta_light.at(p, c) + ratio * rest.at(p, c);
   }
 }
 
@@ -104,14 +103,14 @@ void fill_unknown(const ElementMesh& mesh, const std::vector<std::uint32_t>& tra
 }
 
 void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<3>& out) {
-  std::vector<double> interpolation, noise, halvings;
-  for (const auto& [leaf, off, level, standard_error] : leaf_errors(mesh, field)) {
+  std::vector<double> interpolation, std_error, halvings;
+  for (const auto& [leaf, off, E, std_error_there] : leaf_errors(mesh, field)) {
     out.shapes.push_back(mesh.corner_positions(leaf));
-    interpolation.push_back(level > 0 ? off / level : 0);
-    noise.push_back(level > 0 ? standard_error / level : 0);
+    interpolation.push_back(E > 0 ? off / E : 0);
+    std_error.push_back(E > 0 ? std_error_there / E : 0);
     halvings.push_back(mesh[leaf].level);
   }
-  out.values = {{"interpolation_error", interpolation}, {"noise", noise}, {"level", halvings}};
+  out.values = {{"interpolation_error", interpolation}, {"std_error", std_error}, {"level", halvings}};
 }
 
 }  // namespace

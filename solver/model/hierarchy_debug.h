@@ -30,7 +30,7 @@ struct HierarchyDebug {
   /// glass and on sides that take no part. Rays that escape are as long as the longest that do not.
   DebugShapes<2> rays;
   /// Leaves that are shown and whose vertices were gathered. interpolation_error: how far the middle of an edge may lie
-  /// off, and noise: standard error at the vertices, both relative to the irradiance there [1]; level.
+  /// off, and std_error: standard error at the vertices, both relative to the irradiance there [1]; level.
   DebugShapes<3> error;
 };
 

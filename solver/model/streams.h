@@ -10,14 +10,14 @@ enum Stream : std::uint64_t {
   // Final gather: the same for all points.
   kGatherBundle = 0x01,
   kGatherPilots = 0x02,
-  kGatherLampChoices = 0x03,
+  kGatherBrightChoices = 0x03,
   kGatherSunPoints = 0x04,
   kGatherAreas = 0x05,
-  kGatherLampPilots = 0x07,
+  kGatherBrightPilots = 0x07,
   kAreaPoints = 0xc1,
   kAreaPilots = 0xc2,
   // Direct light, by patch or luminaire.
-  kLampPointsOfPatch = 0x11,
+  kShadowPointsOfPatch = 0x11,
   kSkyRaysOfPatch = 0x12,
   kFluxOfLuminaire = 0x13,
   kOpeningRaysOfPatch = 0x14,
@@ -25,7 +25,7 @@ enum Stream : std::uint64_t {
   kClosureRays = 0x21,
   kSideRays = 0x31,
   kLuminaireRays = 0x32,
-  kLampSearch = 0x33,
+  kLuminaireSearch = 0x33,
   kOpeningRays = 0x34,
   // Methods, by patch or pair of them.
   kShots = 0x41,
@@ -46,8 +46,8 @@ enum Stream : std::uint64_t {
   kGapsSiftedAgain = 0x83,
   // Hierarchy, by receiver, element or link.
   kBundle = 0x91,
-  kLampPairs = 0x92,
-  kLampPairPilot = 0x93,
+  kBrightPairs = 0x92,
+  kBrightPairPilot = 0x93,
   kVariationProbe = 0xa1,
   kBfPairs = 0xb1,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.

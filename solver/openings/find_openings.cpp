@@ -8,8 +8,8 @@
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
+#include "solver/openings/find_gaps.h"
 #include "solver/openings/openings.h"
-#include "solver/openings/rims.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {

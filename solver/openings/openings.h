@@ -27,8 +27,8 @@ double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n);
 /// Form factor [1] of the opening when nothing blocks it; 0 from outside of it.
 double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n);
 
-/// The openings (or panels) that may matter at p: up to `most` of the largest form factors times brightness, in the
-/// order of their numbers; none that gives less than the share least_of_best of the first.
+/// The openings (or bright areas) that may matter at p: up to `most` of the largest form factors times brightness, in
+/// the order of their numbers; none that gives less than the share least_of_best of the first.
 std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
                                       std::size_t most, double least_of_best);
 

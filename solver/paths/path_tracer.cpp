@@ -31,7 +31,7 @@ constexpr unsigned kCostOfOpening = 3;
 /// One shadow ray to a light chosen by u. Of light that bundle rays meet too, the share that is due to shadow rays.
 Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
                    unsigned long long& rays) {
-  const LightSample s = light.lamps.sample(p, n, u[0], u[1], u[2], false);
+  const LightSample s = light.sampler.sample(p, n, u[0], u[1], u[2], false);
   if (s.irradiance.is_black()) return Spectrum(0.0);
   const double weight =
       s.density > 0 ? balance_heuristic(s.density, dot(n, normalized(s.end - p)) / std::numbers::pi) : 1.0;
@@ -70,7 +70,7 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   Spectrum E(0.0), throughput(1.0);
   auto [square, choice, opening] = start;
   while (true) {
-    if (!light.lamps.empty()) E += throughput * one_light(light, p, n, choice, rays);
+    if (!light.sampler.empty()) E += throughput * one_light(light, p, n, choice, rays);
     if (!light.openings.empty()) E += throughput * through_opening(light, p, n, opening, rays);
     const double survival = std::min(1.0, throughput.max() / kSafe);
     if (!(random.uniform() < survival)) return E;
@@ -88,7 +88,7 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     if (!hit.patch.valid()) return E;
     const Spectrum M = patches.M[hit.patch];
     if (!M.is_black()) {
-      E += throughput * M * balance_heuristic(dot(n, d) / std::numbers::pi, light.lamps.density(hit, p, n, d, false));
+      E += throughput * M * balance_heuristic(dot(n, d) / std::numbers::pi, light.sampler.density(hit, p, n, d, false));
     }
     const auto on = patches.scatter(hit.patch, patches.scatters_through(hit.patch) ? random.uniform() : 0);
     throughput *= on.share;

@@ -16,19 +16,19 @@ constexpr Effort kDraft{
     .triangles_to_halve = 1400,
     .triangles = 2000,
     .bundle_rays = 128,
-    .lamp_rays = 64,
+    .bright_rays = 64,
     .element_tolerance = 0.3,
     .vertex_tolerance = 0.1,
     .shortest_edge = 1.0 / 4,
     .most_points = 100'000,
-    .vertices = {.bundle = {8, 64, 64}, .area = {0, 1, 0.02, 128}, .lamp_rays = 32, .sun_rays = 8},
-    .sensors = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .lamp_rays = 64, .sun_rays = 16},
+    .vertices = {.bundle = {8, 64, 64}, .area = {0, 1, 0.02, 128}, .bright_rays = 32, .sun_rays = 8},
+    .sensors = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .gathers_vertices = false,
-    .direct = {.lamp_rays = 16, .edge_rays = 64, .sky_rays = 128},
+    .direct = {.shadow_rays = 16, .edge_rays = 64, .sky_rays = 128},
     .closure_rays = 32,
     .stop_fraction = 1e-2,
     .rays_per_patch = 64,
-    .noisy_patches = {.bundle = {16, 256, 256}, .area = {1, 3, 0.01, 512}, .lamp_rays = 64, .sun_rays = 16},
+    .noisy_patches = {.bundle = {16, 256, 256}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 64,
     .paths_of_sensor = 256,
     .error = {.points = 64, .paths = 256, .rays = 6e4},
@@ -38,19 +38,19 @@ constexpr Effort kStandard{
     .triangles_to_halve = 2800,
     .triangles = 6000,
     .bundle_rays = 256,
-    .lamp_rays = 128,
+    .bright_rays = 128,
     .element_tolerance = 0.1,
     .vertex_tolerance = 0.05,
     .shortest_edge = 1.0 / 8,
     .most_points = 400'000,
-    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .lamp_rays = 128, .sun_rays = 16},
-    .sensors = {.bundle = {16, 256, 2048}, .area = {2, 6, 0.003, 8192}, .lamp_rays = 256, .sun_rays = 32},
+    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 128, .sun_rays = 16},
+    .sensors = {.bundle = {16, 256, 2048}, .area = {2, 6, 0.003, 8192}, .bright_rays = 256, .sun_rays = 32},
     .gathers_vertices = true,
-    .direct = {.lamp_rays = 16, .edge_rays = 256, .sky_rays = 256},
+    .direct = {.shadow_rays = 16, .edge_rays = 256, .sky_rays = 256},
     .closure_rays = 64,
     .stop_fraction = 3e-3,
     .rays_per_patch = 256,
-    .noisy_patches = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .lamp_rays = 64, .sun_rays = 16},
+    .noisy_patches = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 256,
     .paths_of_sensor = 1024,
     .error = {.points = 256, .paths = 512, .rays = 3e5},
@@ -58,10 +58,10 @@ constexpr Effort kStandard{
 
 // The kernels' own defaults are the recommended values: those of `standard`.
 static_assert(HierarchyOptions{}.bundle_rays == kStandard.bundle_rays &&
-              HierarchyOptions{}.lamp_rays == kStandard.lamp_rays &&
+              HierarchyOptions{}.bright_rays == kStandard.bright_rays &&
               HierarchyOptions{}.tolerance == kStandard.element_tolerance);
-static_assert(LinkOptions{}.bundle_rays == kStandard.bundle_rays && LinkOptions{}.lamp_rays == kStandard.lamp_rays);
-static_assert(DirectOptions{}.lamp_rays == kStandard.direct.lamp_rays &&
+static_assert(LinkOptions{}.bundle_rays == kStandard.bundle_rays && LinkOptions{}.bright_rays == kStandard.bright_rays);
+static_assert(DirectOptions{}.shadow_rays == kStandard.direct.shadow_rays &&
               DirectOptions{}.edge_rays == kStandard.direct.edge_rays &&
               DirectOptions{}.sky_rays == kStandard.direct.sky_rays);
 static_assert(ShootOptions{}.stop_fraction == kStandard.stop_fraction &&
@@ -72,19 +72,19 @@ constexpr Effort kFine{
     .triangles_to_halve = 5000,
     .triangles = 20'000,
     .bundle_rays = 256,
-    .lamp_rays = 256,
+    .bright_rays = 256,
     .element_tolerance = 0.05,
     .vertex_tolerance = 0.035,
     .shortest_edge = 1.0 / 16,
     .most_points = 1'600'000,
-    .vertices = {.bundle = {16, 512, 2048}, .area = {1, 4, 0.005, 2048}, .lamp_rays = 128, .sun_rays = 32},
-    .sensors = {.bundle = {16, 1024, 8192}, .area = {2, 6, 0.0015, 16384}, .lamp_rays = 512, .sun_rays = 64},
+    .vertices = {.bundle = {16, 512, 2048}, .area = {1, 4, 0.005, 2048}, .bright_rays = 128, .sun_rays = 32},
+    .sensors = {.bundle = {16, 1024, 8192}, .area = {2, 6, 0.0015, 16384}, .bright_rays = 512, .sun_rays = 64},
     .gathers_vertices = true,
-    .direct = {.lamp_rays = 64, .edge_rays = 1024, .sky_rays = 1024},
+    .direct = {.shadow_rays = 64, .edge_rays = 1024, .sky_rays = 1024},
     .closure_rays = 128,
     .stop_fraction = 1e-3,
     .rays_per_patch = 1024,
-    .noisy_patches = {.bundle = {16, 256, 1024}, .area = {1, 3, 0.01, 512}, .lamp_rays = 64, .sun_rays = 16},
+    .noisy_patches = {.bundle = {16, 256, 1024}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 1024,
     .paths_of_sensor = 4096,
     .error = {.points = 512, .paths = 2048, .rays = 1.5e6},
@@ -101,7 +101,7 @@ void tighten(GatherQuality& quality, int times) {
 Effort effort(Accuracy accuracy, int times) {
   Effort e = accuracy == Accuracy::draft ? kDraft : accuracy == Accuracy::standard ? kStandard : kFine;
   for (int* rays :
-       {&e.bundle_rays, &e.lamp_rays, &e.direct.edge_rays, &e.direct.sky_rays, &e.paths, &e.paths_of_sensor})
+       {&e.bundle_rays, &e.bright_rays, &e.direct.edge_rays, &e.direct.sky_rays, &e.paths, &e.paths_of_sensor})
     *rays <<= times;
   e.rays_per_patch = std::ldexp(e.rays_per_patch, times);
   e.vertex_tolerance *= std::pow(0.7071, times);

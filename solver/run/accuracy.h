@@ -17,11 +17,11 @@ struct Effort {
   double triangles;           ///< the other methods
 
   // Hierarchical.
-  int bundle_rays, lamp_rays;  ///< from each receiver, see LinkOptions
-  double element_tolerance;    ///< of the irradiance within an element [1]
-  double vertex_tolerance;     ///< of the irradiance between vertices [1]
-  double shortest_edge;        ///< / longest edge: below it nothing is halved [1]
-  std::size_t most_points;     ///< gathered
+  int bundle_rays, bright_rays;  ///< from each receiver, see LinkOptions
+  double element_tolerance;      ///< of the irradiance within an element [1]
+  double vertex_tolerance;       ///< of the irradiance between vertices [1]
+  double shortest_edge;          ///< / longest edge: below it nothing is halved [1]
+  std::size_t most_points;       ///< gathered
 
   // Final gathers.
   GatherQuality vertices, sensors;

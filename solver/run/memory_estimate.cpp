@@ -30,10 +30,10 @@ constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all tha
 constexpr double kElementsOfPoint = 2;
 constexpr double kConforming = 2;  // points for one that is asked for: neighbours are halved as well
 
-constexpr MemoryPlan kLeast{.bundle_rays = kFewestRays, .lamp_rays = 16};
+constexpr MemoryPlan kLeast{.bundle_rays = kFewestRays, .bright_rays = 16};
 
 double links_of_element(const MemoryPlan& p, double elements) {
-  const double rays = p.bundle_rays + p.lamp_rays;
+  const double rays = p.bundle_rays + p.bright_rays;
   return rays * elements < kLinksToSpare ? rays : std::min(kLinksOfRay * rays, kMostLinksOfElement);
 }
 
@@ -49,7 +49,7 @@ std::size_t predicted_memory(const MemoryCounts& c) {
 std::optional<MemoryPlan> plan_memory(const MemoryCounts& whole, const MemoryPlan& wish, std::size_t limit) {
   const auto sides = static_cast<double>(whole.sides);
   MemoryPlan plan = wish;
-  for (;; plan.bundle_rays /= 2, plan.lamp_rays = std::max(16, plan.lamp_rays / 2)) {
+  for (;; plan.bundle_rays /= 2, plan.bright_rays = std::max(16, plan.bright_rays / 2)) {
     const double links = kLink * links_of_element(plan, sides);
     const double room = static_cast<double>(limit) - static_cast<double>(predicted_memory(whole)) - links * sides;
     if (room < 0) {

@@ -25,7 +25,7 @@ std::size_t predicted_memory(const MemoryCounts& counts);
 struct MemoryPlan {
   std::size_t most_points = 0;    ///< of the lightmap
   std::size_t most_elements = 0;  ///< for transport
-  int bundle_rays = 0, lamp_rays = 0;
+  int bundle_rays = 0, bright_rays = 0;
 };
 
 /// What `wish` becomes so that the peak stays below `limit` [bytes]: fewer points first, then fewer rays and so fewer

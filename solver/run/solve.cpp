@@ -37,7 +37,7 @@ std::optional<MemoryPlan> memory_plan(const PatchSet& patches, const VertexLight
   const Effort e = effort_of(options);
   const std::size_t points = map.position.size();
   const MemoryPlan wish{std::min(20 * points + 10'000, e.most_points), HierarchyOptions{}.most_elements, e.bundle_rays,
-                        e.lamp_rays};
+                        e.bright_rays};
   if (options.memory_limit == 0) return wish;
   return plan_memory(whole(patches, points), wish, options.memory_limit);
 }
@@ -50,7 +50,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
   const double shortest_edge = e.shortest_edge * longest_edge;
   HierarchicalField field = hierarchical_field(problem, std::move(map),
                                                {.elements = {.bundle_rays = plan.bundle_rays,
-                                                             .lamp_rays = plan.lamp_rays,
+                                                             .bright_rays = plan.bright_rays,
                                                              .tolerance = e.element_tolerance,
                                                              .shortest_edge = shortest_edge,
                                                              .most_elements = plan.most_elements,

@@ -1,5 +1,5 @@
 #pragma once
-// The unit square in cells, fine where what is seen changes: how openings and panels are looked at.
+// The unit square in cells, fine where what is seen changes: how openings and bright areas are looked at.
 
 #include <array>
 #include <cstdint>

@@ -45,14 +45,14 @@ GatherPattern::GatherPattern(const GatherQuality& quality, std::uint64_t seed)
       bundle_(quality.bundle, stream_key(seed, kGatherBundle), stream_key(seed, kGatherPilots)),
       area_cells_(quality.area.last, stream_key(seed, kGatherAreas)),
       sun_key_(stream_key(seed, kGatherSunPoints)) {
-  const std::uint64_t lamp_key = stream_key(seed, kGatherLampChoices);
-  for (int k = 0; k < quality.lamp_rays; ++k) {
-    const auto u = sobol4(static_cast<std::uint32_t>(k), lamp_key);
-    lamp_choices_.push_back({u[0], u[1], u[2]});
+  const std::uint64_t bright_key = stream_key(seed, kGatherBrightChoices);
+  for (int k = 0; k < quality.bright_rays; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), bright_key);
+    bright_choices_.push_back({u[0], u[1], u[2]});
   }
-  for (std::uint32_t k = 0; k < kLampPilots; ++k) {
-    const auto u = sobol4(k, stream_key(seed, kGatherLampPilots));
-    lamp_pilots_.push_back({u[0], u[1], u[2]});
+  for (std::uint32_t k = 0; k < kBrightPilots; ++k) {
+    const auto u = sobol4(k, stream_key(seed, kGatherBrightPilots));
+    bright_pilots_.push_back({u[0], u[1], u[2]});
   }
 }
 

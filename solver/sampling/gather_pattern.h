@@ -32,8 +32,8 @@ struct RayBudget {
 /// How many rays a point gets.
 struct GatherQuality {
   RayBudget bundle;  ///< over the hemisphere
-  AreaBudget area;   ///< to each opening and each panel that matters
-  int lamp_rays;     ///< shadow rays to bright patches, a multiple of 16
+  AreaBudget area;   ///< to each opening and each bright area that matters
+  int bright_rays;   ///< shadow rays to bright patches, a multiple of 16
   int sun_rays;      ///< to each sun
 };
 
@@ -67,10 +67,10 @@ class GatherPattern {
   const Strata& bundle() const { return bundle_; }
   const AreaCells& area_cells() const { return area_cells_; }
   /// Which light, and where on it, for each lamp ray.
-  const std::vector<std::array<double, 3>>& lamp_choices() const { return lamp_choices_; }
+  const std::vector<std::array<double, 3>>& bright_choices() const { return bright_choices_; }
   /// The same for pilot rays.
-  static constexpr std::uint32_t kLampPilots = 64;
-  const std::vector<std::array<double, 3>>& lamp_pilots() const { return lamp_pilots_; }
+  static constexpr std::uint32_t kBrightPilots = 64;
+  const std::vector<std::array<double, 3>>& bright_pilots() const { return bright_pilots_; }
   std::uint64_t sun_key() const { return sun_key_; }
 
   int stratum_of(const Frame& frame, const Vec3& direction) const;
@@ -79,7 +79,7 @@ class GatherPattern {
   GatherQuality quality_;
   Strata bundle_;
   AreaCells area_cells_;
-  std::vector<std::array<double, 3>> lamp_choices_, lamp_pilots_;
+  std::vector<std::array<double, 3>> bright_choices_, bright_pilots_;
   std::uint64_t sun_key_;
 };
 

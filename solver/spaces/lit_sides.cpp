@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "solver/illumination/bright_areas.h"
 #include "solver/illumination/light_sampler.h"
-#include "solver/illumination/panels.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
 #include "solver/model/disjoint_sets.h"
@@ -18,8 +18,9 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 14;   ///< patches between two looks at what is known by then
-constexpr std::size_t kLampSamples = 64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
+constexpr std::size_t kBlock = 1 << 14;  ///< patches between two looks at what is known by then
+constexpr std::size_t kLuminaireSamples =
+    64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
 
 /// Patches that see each other, and what is known of each such space.
 class Spaces {
@@ -103,29 +104,29 @@ struct Found {
   std::vector<PatchId> glowing;  ///< patches that light it
 };
 
-Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
-                     std::uint64_t seed) {
+Found look_for_luminaires(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
+                          std::uint64_t seed) {
   const auto corners = problem.patches.corner_positions(PatchId{i});
   const Vec3 n = problem.patches.normal[i];
   const double lift = problem.rays.lift();
-  const std::uint64_t key = stream_key(seed, kLampSearch, i);
-  std::array<Vec3, kLampSamples> points;
+  const std::uint64_t key = stream_key(seed, kLuminaireSearch, i);
+  std::array<Vec3, kLuminaireSamples> points;
   for (std::uint32_t k = 0; k < points.size(); ++k) {
     const auto u = sobol4(k, key);
     points[k] = point_on_triangle(corners, u[0], u[1]) + n * lift;
   }
   Found found;
-  for (const PlacedLuminaire& lamp : problem.lights.luminaires) {
-    if (lamp.mirror != kNoMirror) continue;
+  for (const PlacedLuminaire& luminaire : problem.lights.luminaires) {
+    if (luminaire.mirror != kNoMirror) continue;
     found.lit = found.lit || any_visible(problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
                   const auto u = sobol4(k, key + 1);
                   from = points[k];
-                  const Vec3 q = light_point(lamp, from, u[0], u[1]);
+                  const Vec3 q = light_point(luminaire, from, u[0], u[1]);
                   to = short_of(q, from, lift);
-                  return !open_irradiance(lamp, q, from, n).is_black();
+                  return !open_irradiance(luminaire, q, from, n).is_black();
                 });
   }
-  for (std::uint32_t k = 0; k < samples && emitters.has_emitters(); ++k) {
+  for (std::uint32_t k = 0; k < samples && emitters.has_bright_patches(); ++k) {
     const auto u = sobol4(k, key);
     const LightSample s = emitters.sample(points[k], n, (k + u[2]) / static_cast<double>(samples), u[3], u[0], true);
     if (s.patch.valid() && !problem.rays.transmittance(points[k], s.end).is_black()) found.glowing.push_back(s.patch);
@@ -134,22 +135,22 @@ Found look_for_lamps(const Problem& problem, const LightSampler& emitters, std::
 }
 
 /// Sides that rays of the luminaires meet. Many lamps share the rays of sixteen: they stand in the same rooms.
-void light_by_lamps(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
-  const std::vector<PlacedLuminaire>& lamps = problem.lights.luminaires;
-  const std::size_t count = lamps.size();
+void light_by_luminaires(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
+  const std::vector<PlacedLuminaire>& luminaires = problem.lights.luminaires;
+  const std::size_t count = luminaires.size();
   if (count == 0) return;
   const std::size_t rays_each = std::clamp<std::size_t>((1 << 16) / count, 256, 4096);
   std::vector<PatchId> met(count * rays_each);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number) {
-      const PlacedLuminaire& lamp = lamps[number];
-      if (lamp.mirror != kNoMirror) continue;
+      const PlacedLuminaire& luminaire = luminaires[number];
+      if (luminaire.mirror != kNoMirror) continue;
       const std::uint64_t key = stream_key(seed, kLuminaireRays, number);
       for (std::size_t k = 0; k < rays_each; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), key);
         const Vec3 d = sphere_direction(u[0], u[1]);
-        const Vec3 start = lamp.position + d * (20 * problem.rays.lift());
-        if (!intensity(lamp, d).is_black())
+        const Vec3 start = luminaire.position + d * (20 * problem.rays.lift());
+        if (!intensity(luminaire, d).is_black())
           met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
       }
     }
@@ -173,14 +174,14 @@ void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& space
 }
 
 /// Lets the given patches look for luminaires and for the patches that glow.
-void search_lamps(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
-                  std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
+void search_luminaires(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
+                       std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
   const LightSampler emitters(problem, glow);
   for (std::size_t begin = 0; begin < receivers.size() && !monitor.should_stop(); begin += kBlock) {
     std::vector<Found> found(std::min(kBlock, receivers.size() - begin));
     parallel_for(found.size(), 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k)
-        found[k] = look_for_lamps(problem, emitters, receivers[begin + k], samples, seed);
+        found[k] = look_for_luminaires(problem, emitters, receivers[begin + k], samples, seed);
     });
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (found[k].lit) spaces.light(receivers[begin + k]);
@@ -200,7 +201,7 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   Spaces spaces(patches);
   for (std::size_t i = 0; i < n; ++i)
     for (const PatchSet::Behind& other : patches.patches_behind(i)) spaces.see_each_other(patches, i, other.patch);
-  light_by_lamps(problem, seed, spaces);
+  light_by_luminaires(problem, seed, spaces);
   light_by_openings(problem, seed, spaces);
 
   // Emitters first: most patches of a large scene are then met by a ray before it is their turn, and send none, or meet
@@ -241,12 +242,12 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
     lonely.set(i, patches.M[i]);
     any_lonely = true;
   }
-  search_lamps(problem, patches.M, in_doubt, kLampSamples, seed, monitor, spaces);
+  search_luminaires(problem, patches.M, in_doubt, kLuminaireSamples, seed, monitor, spaces);
   if (any_lonely) {
     // Seldom: the inside of a lamp, which no one finds, or a lamp in the open. So the effort has a bound.
     const std::size_t samples =
-        std::clamp<std::size_t>((1 << 22) / std::max<std::size_t>(in_glow.size(), 1), 1, kLampSamples);
-    search_lamps(problem, lonely, in_glow, samples, seed, monitor, spaces);
+        std::clamp<std::size_t>((1 << 22) / std::max<std::size_t>(in_glow.size(), 1), 1, kLuminaireSamples);
+    search_luminaires(problem, lonely, in_glow, samples, seed, monitor, spaces);
   }
 
   std::vector<char> lights_others(patches.materials.size(), 0);
@@ -267,11 +268,11 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   for (std::size_t i = 0; i < n; ++i) {
     const bool lit = spaces.is_lit(i), glows = spaces.glows(i);
     const MaterialId only = spaces.only_material(i);
-    const bool inside_lamp = !lit && glows && only.valid() && lights_others[only];
-    if (lit || goes_on[i] || (glows && !inside_lamp))
+    const bool inside_luminaire = !lit && glows && only.valid() && lights_others[only];
+    if (lit || goes_on[i] || (glows && !inside_luminaire))
       result.wanted[2 * patches.triangle[i] + patches.side[i]] = true;
     else
-      ++(inside_lamp ? result.lamp_interiors : result.dark_sides);
+      ++(inside_luminaire ? result.luminaire_interiors : result.dark_sides);
   }
   return result;
 }

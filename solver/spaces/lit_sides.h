@@ -10,9 +10,9 @@
 namespace clerestory {
 
 struct LitSides {
-  std::vector<bool> wanted;        ///< 2T, for make_patches()
-  std::size_t dark_sides = 0;      ///< sides no light reaches: inside solids, outside of sealed rooms
-  std::size_t lamp_interiors = 0;  ///< emitting sides that only see the inside of their own lamp body
+  std::vector<bool> wanted;             ///< 2T, for make_patches()
+  std::size_t dark_sides = 0;           ///< sides no light reaches: inside solids, outside of sealed rooms
+  std::size_t luminaire_interiors = 0;  ///< emitting sides that only see the inside of their own lamp body
 };
 
 /// Follows light over rays from luminaires, sky, sun and emitting sides to every side it can reach in any number of

@@ -194,7 +194,7 @@ TEST(Solve, TheDebugOutputShowsElementsLinksRaysAndErrors) {
   EXPECT_GT(std::count_if(landed.begin(), landed.end(), [](double B) { return B > 0; }), std::ssize(landed) / 4);
 
   EXPECT_EQ(error.triangles.size(), read_result(folder / "out.vtp").triangles.size());
-  for (const char* name : {"interpolation_error", "noise"})
+  for (const char* name : {"interpolation_error", "std_error"})
     for (const double value : error.of_cells.at(name).values) ASSERT_GE(value, 0) << name;
 }
 

@@ -44,8 +44,8 @@ PatchSet room_with_lamp() {
 }
 
 TEST(TraceLinks, RowsSumToTheClosedShareWithPairsAndWithout) {
-  for (const int lamp_rays : {0, 64}) {
-    const Linked l(room_with_lamp(), {.bundle_rays = 64, .lamp_rays = lamp_rays});
+  for (const int bright_rays : {0, 64}) {
+    const Linked l(room_with_lamp(), {.bundle_rays = 64, .bright_rays = bright_rays});
     Field one(l.patches.patch_count(), 1);
     for (double& x : one.value) x = 1;
     const Field E = l.gather(one);
@@ -60,7 +60,7 @@ TEST(TraceLinks, AnOpenPatchKnowsWhatEscapes) {
   // A floor below a parallel ceiling of the same size, 1 x 1 at distance 1: F = 0.199824896 (Howell C-11).
   test::PatchBuilder b(0.5);
   b.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).rectangle({0, 0, 1}, {0, 1, 0}, {1, 0, 0});
-  const Linked l(b.build(), {.bundle_rays = 4096, .lamp_rays = 0});
+  const Linked l(b.build(), {.bundle_rays = 4096, .bright_rays = 0});
   double arrives = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(double{l.transport.arrives[i]} + double{l.transport.escapes[i]}, 1, 1e-6);
@@ -75,7 +75,7 @@ TEST(TraceLinks, ASmallLampIsFoundByPairsWhereABundleMissesIt) {
   test::PatchBuilder b(0.5);
   b.rectangle({-0.005, -0.005, 0}, {0.01, 0, 0}, {0, 0.01, 0});
   b.material(0, 1e6).rectangle({-0.005, -0.005, 2}, {0, 0.01, 0}, {0.01, 0, 0});
-  const Linked l(b.build(), {.bundle_rays = 64, .lamp_rays = 64});
+  const Linked l(b.build(), {.bundle_rays = 64, .bright_rays = 64});
   const Field E = l.gather(l.patches.M);
   const double exact = 1e6 * 1e-4 / (std::numbers::pi * 4);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(E[i][0], exact, 1e-4 * exact);  // (size / distance)^2 = 2.5e-5
@@ -96,7 +96,7 @@ PatchSet room_with_gravel() {
 }
 
 TEST(TraceLinks, AClusterHandsDownExactlyTheFluxItReceives) {
-  const Linked l(room_with_gravel(), {.bundle_rays = 64, .lamp_rays = 64, .cluster_diameter = 0.05});
+  const Linked l(room_with_gravel(), {.bundle_rays = 64, .bright_rays = 64, .cluster_diameter = 0.05});
   EXPECT_LT(l.transport.receiver_count(), l.patches.patch_count() / 2) << "clusters receive";
   Field B(l.patches.patch_count(), 1);
   for (std::size_t i = 0; i < B.size(); ++i) B.at(i, 0) = 1 + static_cast<double>(i % 5);
@@ -127,7 +127,7 @@ TEST(TraceLinks, MembersOfAClusterReceiveByTheirOrientation) {
   test::PatchBuilder b(0);
   b.box({-5, -5, -5}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}, {1, 1, 1}, true);
   b.box({-0.01, -0.01, -0.01}, {0.02, 0, 0}, {0, 0.02, 0}, {0, 0, 0.02}, {1, 1, 1}, false);
-  const Linked l(b.build(), {.bundle_rays = 1024, .lamp_rays = 0, .cluster_diameter = 0.1});
+  const Linked l(b.build(), {.bundle_rays = 1024, .bright_rays = 0, .cluster_diameter = 0.1});
   Field B(l.patches.patch_count(), 1);
   for (std::size_t i = 0; i < B.size(); ++i) B.at(i, 0) = l.patches.normal[i].z < -0.5 && i < 12 ? 1 : 0;
   const Field E = l.gather(B);

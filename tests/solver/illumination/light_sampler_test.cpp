@@ -95,9 +95,9 @@ Mean mean(int count, const F& f) {
   return {value, std::sqrt(std::max(0.0, squares / count - value * value) / count)};
 }
 
-LightSample draw(const LightSampler& sampler, const Place& at, RandomStream& random, bool emitters_only) {
+LightSample draw(const LightSampler& sampler, const Place& at, RandomStream& random, bool bright_patches_only) {
   const double pick = random.uniform(), u = random.uniform(), v = random.uniform();
-  return sampler.sample(at.p, at.n, pick, u, v, emitters_only);
+  return sampler.sample(at.p, at.n, pick, u, v, bright_patches_only);
 }
 
 TEST(LightTree, ProbabilitiesSumToOneWhereverLightCanReach) {
@@ -175,13 +175,13 @@ TEST(LightSampler, DensityIsTheOneOfTheSampleThatWasDrawn) {
     int found = 0;
     for (const Place& at : places(40))
       for (int k = 0; k < 50; ++k) {
-        const bool emitters_only = k % 2 == 0;
-        const LightSample s = draw(lit.sampler, at, random, emitters_only);
+        const bool bright_patches_only = k % 2 == 0;
+        const LightSample s = draw(lit.sampler, at, random, bright_patches_only);
         if (!s.patch.valid()) continue;
         ++found;
         const Vec3 normal = lit.patches.normal[s.patch], d = s.end - normal * lit.rays.lift() - at.p;
         const double cos_q = -dot(normal, normalized(d));
-        const double density = lit.sampler.density(s.patch, at.p, at.n, length(d), cos_q, emitters_only);
+        const double density = lit.sampler.density(s.patch, at.p, at.n, length(d), cos_q, bright_patches_only);
         EXPECT_NEAR(density / s.density, 1, 1e-9 / cos_q) << count;
       }
     EXPECT_GT(found, count == 1 ? 20 : 300);
@@ -246,7 +246,7 @@ TEST(LightSampler, WithABundleIrradianceIsExactOnAverageTouchingAndGrazing) {
       const double u = random.uniform(), v = random.uniform();
       const Vec3 d = cosine_direction(frame, u, v);
       const Hit hit = lit.rays.first_hit(lit.patches, {at.p, d});
-      if (hit.patch.valid() && lit.sampler.is_explicit(hit.patch)) {
+      if (hit.patch.valid() && lit.sampler.is_bright(hit.patch)) {
         const double bundle = dot(at.n, d) / kPi, cos_q = -dot(lit.patches.normal[hit.patch], d);
         const double lamp = lit.sampler.density(hit.patch, at.p, at.n, hit.distance, cos_q, true);
         E += lit.patches.M[hit.patch][0] * bundle / (bundle + lamp);
@@ -328,7 +328,7 @@ TEST(LightSampler, SmallLightsAreTheSumOfWhatIsNotInShadow) {
   double exact = 20 * lights.suns[0].direction.z;
   for (const Luminaire& lamp : lights.luminaires)
     if (lamp.position.y < 20) exact += open_irradiance(lamp, at.p, at.n)[0];
-  EXPECT_NEAR(lit.sampler.small_lights(at.p, at.n, 64, 1)[0], exact, 1e-5 * exact);  // the sun is a disc
+  EXPECT_NEAR(lit.sampler.delta_light(at.p, at.n, 64, 1)[0], exact, 1e-5 * exact);  // the sun is a disc
 }
 
 TEST(LightSampler, BrightPatchesAreThoseOverFourTimesTheMedianOfTheArea) {
@@ -339,7 +339,7 @@ TEST(LightSampler, BrightPatchesAreThoseOverFourTimesTheMedianOfTheArea) {
   b.material(0.5, 40.1).rectangle({0, 6, 0}, {0.1, 0, 0}, {0, 1, 0});
   const Lit lit(b.build());
   for (std::size_t i = 0; i < lit.patches.patch_count(); ++i)
-    EXPECT_EQ(lit.sampler.is_explicit(PatchId{i}), lit.patches.M[i][0] > 40) << i;
+    EXPECT_EQ(lit.sampler.is_bright(PatchId{i}), lit.patches.M[i][0] > 40) << i;
 }
 
 }  // namespace

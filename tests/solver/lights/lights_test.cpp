@@ -93,7 +93,7 @@ TEST(DirectLight, OfALampInAClosedRoomIsItsWholeFlux) {
   Lights lights;
   lights.luminaires.push_back(test::point_lamp({2.5, 2.0, 2.4}, 70));
   const Problem problem{patches, rays, lights};
-  const DirectLight direct = direct_light(Illumination(problem), {.lamp_rays = 64});
+  const DirectLight direct = direct_light(Illumination(problem), {.shadow_rays = 64});
   double arrived = 0;
   for (std::size_t i = 0; i < patches.patch_count(); ++i) arrived += patches.area[i] * direct.E[i][0];
   EXPECT_NEAR(arrived, 70, 70 * 1e-3);  // 64 stratified points on each of 2,160 patches
@@ -109,7 +109,7 @@ TEST(DirectLight, OfTheSunIsItsNormalIlluminanceTimesTheCosineWhereNothingShades
   Lights lights;
   lights.suns.push_back({{{0, 0, 1}, Spectrum(800)}});
   const Problem problem{patches, rays, lights};
-  const DirectLight direct = direct_light(Illumination(problem), {.lamp_rays = 64});
+  const DirectLight direct = direct_light(Illumination(problem), {.shadow_rays = 64});
   double on_floor = 0;
   for (std::size_t i = 0; i < 3200; ++i) on_floor += patches.area[i] * direct.E[i][0];
   EXPECT_NEAR(direct.E[0][0], 800, 800 * 2e-5);  // the rim of the disc stands 0.27 degrees off

@@ -106,9 +106,9 @@ TEST(Hierarchical, ANearlyWhiteRoomConvergesInFewSweeps) {
 
 TEST(Hierarchical, TheSameBitsForOneAndTwoThreads) {
   const Room room(lamp_room(0.5));
-  const HierarchicalSolution two = room.solve({.bundle_rays = 64, .lamp_rays = 16});
+  const HierarchicalSolution two = room.solve({.bundle_rays = 64, .bright_rays = 16});
   set_thread_count(1);
-  const HierarchicalSolution one = room.solve({.bundle_rays = 64, .lamp_rays = 16});
+  const HierarchicalSolution one = room.solve({.bundle_rays = 64, .bright_rays = 16});
   set_thread_count(0);
   EXPECT_EQ(one.solution.E.value, two.solution.E.value);
   EXPECT_EQ(one.solution.B.value, two.solution.B.value);
@@ -117,11 +117,12 @@ TEST(Hierarchical, TheSameBitsForOneAndTwoThreads) {
 
 TEST(Hierarchical, ErrorFallsWithTheRaysAtLeastAsOneOverTheRoot) {
   const Room room(lamp_room(0.5, 8));
-  const Solution reference = room.solve({.bundle_rays = 8192, .lamp_rays = 8192, .tolerance = 1e9, .seed = 7}).solution;
+  const Solution reference =
+      room.solve({.bundle_rays = 8192, .bright_rays = 8192, .tolerance = 1e9, .seed = 7}).solution;
   std::vector<double> error;
   for (const int rays : {32, 512})
     error.push_back(rms_error(
-        room.patches, room.solve({.bundle_rays = rays, .lamp_rays = rays, .tolerance = 1e9}).solution.E, reference));
+        room.patches, room.solve({.bundle_rays = rays, .bright_rays = rays, .tolerance = 1e9}).solution.E, reference));
   // Sixteen times the rays: a quarter of the error or less. Sources merged to nodes leave a floor below 0.3 %.
   EXPECT_LT(error[1], error[0] / 4 + 0.003);
 }
@@ -132,7 +133,7 @@ TEST(Hierarchical, ATighterToleranceBringsTheWholeFieldNearerToTheTruth) {
   double last = 1;
   for (const double tolerance : {1e9, 0.3, 0.05}) {
     const HierarchicalSolution h =
-        room.solve({.bundle_rays = 1024, .lamp_rays = 256, .tolerance = tolerance, .shortest_edge = 0.1});
+        room.solve({.bundle_rays = 1024, .bright_rays = 256, .tolerance = tolerance, .shortest_edge = 0.1});
     ElementMesh fine(room.patches, room.map);
     for (int k = 0; k < 5; ++k) fine.split(fine.leaves());
     const PatchSet points = fine.leaf_patches();
@@ -216,7 +217,7 @@ TEST(Hierarchical, ASunPatchLightsTheRoomAndIsHalvedAlongItsEdge) {
   const Room room(b.build(), lights);
   const HierarchicalSolution h = room.solve({.shortest_edge = 0.05});
   double direct = 0;
-  for (std::size_t i = 0; i < h.elements.patch_count(); ++i) direct += h.elements.area[i] * h.small_lights[i][0];
+  for (std::size_t i = 0; i < h.elements.patch_count(); ++i) direct += h.elements.area[i] * h.delta_light[i][0];
   const double through = 0.25 * 1000 * sun.direction.z;
   EXPECT_NEAR(direct, through, 0.01 * through) << "straddling elements keep their flux";
   EXPECT_GT(h.elements.patch_count(), room.patches.patch_count() + 50);
@@ -226,7 +227,7 @@ TEST(Hierarchical, ASunPatchLightsTheRoomAndIsHalvedAlongItsEdge) {
   // Where the sun does not shine.
   double error = 0, level = 0;
   for (std::size_t i = 0; i < h.elements.patch_count(); ++i)
-    if (h.small_lights[i][0] == 0) {
+    if (h.delta_light[i][0] == 0) {
       const double a = h.elements.area[i], noise = reference.std_error[i][0];
       error += a * (std::pow(h.solution.E[i][0] - reference.E[i][0], 2) - noise * noise);
       level += a * reference.E[i][0];

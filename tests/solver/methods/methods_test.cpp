@@ -244,7 +244,7 @@ TEST(LitSides, TheInsideOfALampBodyIsDroppedAndItsOutsideIsNot) {
     EXPECT_TRUE(lit.wanted[2 * t]);
     EXPECT_FALSE(lit.wanted[2 * t + 1]);
   }
-  EXPECT_EQ(lit.lamp_interiors, 12u);
+  EXPECT_EQ(lit.luminaire_interiors, 12u);
   make_patches(room.patches, lit.wanted);
   EXPECT_NEAR(flux(room.patches), 10, 1e-9);  // all of the lamp's power goes into the room
 }

@@ -1,4 +1,4 @@
-#include "io/formats/sky_image.h"
+#include "io/formats/read_sky_image.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "apps/settings.h"
+#include "apps/effective_settings.h"
 
 #include "io/memory_size.h"
 

@@ -1,4 +1,4 @@
-#include "solver/illumination/panels.h"
+#include "solver/illumination/bright_areas.h"
 
 #include <numbers>
 
@@ -39,13 +39,13 @@ SceneMaker room_with_ceiling_lamp() {
 TEST(FindPanels, ALampOfManyPatchesIsOneRectangle) {
   SceneMaker m = room_with_ceiling_lamp();
   const LitRoom room(m);
-  const Panels panels = find_panels(room.patches, LightSampler(room.problem, room.patches.M));
-  ASSERT_EQ(panels.shape.size(), 1u);
-  EXPECT_EQ(panels.shape[0].corners.size(), 4u);
-  EXPECT_NEAR(panels.shape[0].area, 1, 1e-9);
-  EXPECT_NEAR(panels.shape[0].normal.z, -1, 1e-9);
-  EXPECT_NEAR(panels.shape[0].brightness, 100 / std::numbers::pi, 1e-9);
-  EXPECT_NEAR(panels.flux[0], panels.all_flux, 1e-9);
+  const BrightAreas bright_areas = find_bright_areas(room.patches, LightSampler(room.problem, room.patches.M));
+  ASSERT_EQ(bright_areas.shape.size(), 1u);
+  EXPECT_EQ(bright_areas.shape[0].corners.size(), 4u);
+  EXPECT_NEAR(bright_areas.shape[0].area, 1, 1e-9);
+  EXPECT_NEAR(bright_areas.shape[0].normal.z, -1, 1e-9);
+  EXPECT_NEAR(bright_areas.shape[0].brightness, 100 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(bright_areas.flux[0], bright_areas.all_flux, 1e-9);
 }
 
 TEST(FindPanels, TwoLampsInOnePlaneAreTwo) {
@@ -55,14 +55,14 @@ TEST(FindPanels, TwoLampsInOnePlaneAreTwo) {
   m.edit(lamp).sides = 1;
   m.polygon({{3, 3, 2.9}, {3, 3.5, 2.9}, {3.5, 3.5, 2.9}, {3.5, 3, 2.9}}, lamp);
   const LitRoom room(m);
-  EXPECT_EQ(find_panels(room.patches, LightSampler(room.problem, room.patches.M)).shape.size(), 2u);
+  EXPECT_EQ(find_bright_areas(room.patches, LightSampler(room.problem, room.patches.M)).shape.size(), 2u);
 }
 
 TEST(GatherPoint, OfAnEvenPanelThatNothingHidesIsTheClosedForm) {
   SceneMaker m = room_with_ceiling_lamp();
   const LitRoom room(m);
   Illumination light(room.problem, room.patches.M);
-  light.look_at_panels();
+  light.look_at_bright_areas();
   const GatherPattern pattern(test::gather_quality(), 3);
   const Vec3 origin = room.patches.origin;
   const std::vector<Vec3> lamp{Vec3{1.5, 1.5, 2.9} - origin, Vec3{1.5, 2.5, 2.9} - origin, Vec3{2.5, 2.5, 2.9} - origin,
@@ -88,7 +88,7 @@ TEST(GatherPoint, OfAPanelBehindABoardIsWhatTheBoardLeaves) {
   constexpr int kSeeds = 8;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     Illumination light(room.problem, room.patches.M);
-    light.look_at_panels();
+    light.look_at_bright_areas();
     unsigned long long rays = 0;
     const double E = gather_point(light, p, {0, 0, 1}, GatherPattern(test::gather_quality(), seed), rays).E[0];
     EXPECT_NEAR(E / exact, 1, 5e-3);  // 128 x 128 cells or more along the edge

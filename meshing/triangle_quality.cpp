@@ -1,4 +1,4 @@
-#include "meshing/mesh_report.h"
+#include "meshing/triangle_quality.h"
 
 #include <algorithm>
 #include <numbers>

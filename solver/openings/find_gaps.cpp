@@ -1,4 +1,4 @@
-#include "solver/openings/rims.h"
+#include "solver/openings/find_gaps.h"
 
 #include <algorithm>
 #include <array>

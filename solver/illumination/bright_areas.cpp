@@ -1,4 +1,4 @@
-#include "solver/illumination/panels.h"
+#include "solver/illumination/bright_areas.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kMostPanels = 64;
+constexpr std::size_t kMostBrightAreas = 64;
 constexpr std::size_t kFewPlanes = 4;
 constexpr double kDark = 1e-3;  ///< of the brightest patch: does not count as light
 constexpr double kLeastFilled = 1.0 / 3;
@@ -53,9 +53,9 @@ std::vector<Flat> convex_hull(std::vector<Flat> points) {
 }
 
 LightArea area_of(const PatchSet& patches, const std::vector<std::uint32_t>& group, const Field& glow) {
-  LightArea panel;
-  panel.normal = patches.normal[group[0]];
-  const Frame frame(panel.normal);
+  LightArea bright_area;
+  bright_area.normal = patches.normal[group[0]];
+  const Frame frame(bright_area.normal);
   const Vec3 origin = patches.corner_positions(PatchId{std::size_t{group[0]}})[0];
   std::vector<Flat> points;
   double flux = 0, area = 0;
@@ -67,16 +67,16 @@ LightArea area_of(const PatchSet& patches, const std::vector<std::uint32_t>& gro
   }
   const std::vector<Flat> hull = convex_hull(std::move(points));
   const auto lift = [&](const Flat& f) { return origin + frame.t * f.x + frame.b * f.y; };
-  for (const Flat& f : hull) panel.corners.push_back(lift(f));
+  for (const Flat& f : hull) bright_area.corners.push_back(lift(f));
   for (std::size_t k = 2; k < hull.size(); ++k) {
-    panel.triangles.push_back({lift(hull[0]), lift(hull[k - 1]), lift(hull[k])});
-    const auto& t = panel.triangles.back();
-    panel.area += length(cross(t[1] - t[0], t[2] - t[0])) / 2;
+    bright_area.triangles.push_back({lift(hull[0]), lift(hull[k - 1]), lift(hull[k])});
+    const auto& t = bright_area.triangles.back();
+    bright_area.area += length(cross(t[1] - t[0], t[2] - t[0])) / 2;
   }
-  for (const Flat& f : hull) panel.centre += lift(f) / static_cast<double>(hull.size());
-  for (const Flat& f : hull) panel.radius = std::max(panel.radius, length(lift(f) - panel.centre));
-  panel.brightness = area > kLeastFilled * panel.area ? flux / (area * std::numbers::pi) : 0;
-  return panel;
+  for (const Flat& f : hull) bright_area.centre += lift(f) / static_cast<double>(hull.size());
+  for (const Flat& f : hull) bright_area.radius = std::max(bright_area.radius, length(lift(f) - bright_area.centre));
+  bright_area.brightness = area > kLeastFilled * bright_area.area ? flux / (area * std::numbers::pi) : 0;
+  return bright_area;
 }
 
 }  // namespace
@@ -95,11 +95,11 @@ std::vector<std::vector<std::uint32_t>> plane_groups(const PatchSet& patches, co
           joined.join(corners[k].number, corners[last].number);
     first = last;
   }
-  std::vector<std::uint32_t> group_of(of.size(), Panels::kNone);
+  std::vector<std::uint32_t> group_of(of.size(), BrightAreas::kNone);
   std::vector<std::vector<std::uint32_t>> groups;
   for (std::size_t k = 0; k < of.size(); ++k) {
     const std::size_t name = joined.find(k);
-    if (group_of[name] == Panels::kNone) {
+    if (group_of[name] == BrightAreas::kNone) {
       group_of[name] = static_cast<std::uint32_t>(groups.size());
       groups.emplace_back();
     }
@@ -108,16 +108,16 @@ std::vector<std::vector<std::uint32_t>> plane_groups(const PatchSet& patches, co
   return groups;
 }
 
-Panels find_panels(const PatchSet& patches, const LightSampler& lamps) {
-  const Field& glow = lamps.glow();
+BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& luminaires) {
+  const Field& glow = luminaires.glow();
   std::vector<std::uint32_t> bright, glowing;
   double brightest = 0;
-  Panels panels;
+  BrightAreas bright_areas;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i) {
     brightest = std::max(brightest, luminous_mean(glow[i]));
-    if (!lamps.is_explicit(PatchId{std::size_t{i}})) continue;
+    if (!luminaires.is_bright(PatchId{std::size_t{i}})) continue;
     bright.push_back(i);
-    panels.all_flux += patches.area[i] * luminous_mean(glow[i]);
+    bright_areas.all_flux += patches.area[i] * luminous_mean(glow[i]);
   }
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i)
     if (luminous_mean(glow[i]) > kDark * brightest) glowing.push_back(i);
@@ -130,28 +130,28 @@ Panels find_panels(const PatchSet& patches, const LightSampler& lamps) {
   std::vector<std::pair<double, std::uint32_t>> by_flux;
   for (std::uint32_t g = 0; g < groups.size(); ++g) by_flux.emplace_back(-flux(groups[g]), g);
   std::sort(by_flux.begin(), by_flux.end());
-  by_flux.resize(std::min(by_flux.size(), kMostPanels));
+  by_flux.resize(std::min(by_flux.size(), kMostBrightAreas));
   for (const auto& [darkness, g] : by_flux) {
     LightArea shape = area_of(patches, groups[g], glow);
     if (!(shape.brightness > 0)) continue;
-    if (panels.of_patch.empty()) panels.of_patch.assign(patches.patch_count(), Panels::kNone);
+    if (bright_areas.of_patch.empty()) bright_areas.of_patch.assign(patches.patch_count(), BrightAreas::kNone);
     double of_explicit = 0;
     for (const std::uint32_t p : groups[g]) {
-      panels.of_patch[p] = static_cast<std::uint32_t>(panels.shape.size());
-      if (lamps.is_explicit(PatchId{std::size_t{p}})) of_explicit += patches.area[p] * luminous_mean(glow[p]);
+      bright_areas.of_patch[p] = static_cast<std::uint32_t>(bright_areas.shape.size());
+      if (luminaires.is_bright(PatchId{std::size_t{p}})) of_explicit += patches.area[p] * luminous_mean(glow[p]);
     }
-    panels.flux.push_back(of_explicit);
-    panels.shape.push_back(std::move(shape));
+    bright_areas.flux.push_back(of_explicit);
+    bright_areas.shape.push_back(std::move(shape));
   }
   double dim_area = 0;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i) {
     const PatchId p{std::size_t{i}};
-    if (lamps.is_explicit(p) || panels.of(p) != Panels::kNone) continue;
-    panels.ambient += patches.area[i] * luminous_mean(glow[i]);
+    if (luminaires.is_bright(p) || bright_areas.of(p) != BrightAreas::kNone) continue;
+    bright_areas.ambient += patches.area[i] * luminous_mean(glow[i]);
     dim_area += patches.area[i];
   }
-  if (dim_area > 0) panels.ambient /= dim_area;
-  return panels;
+  if (dim_area > 0) bright_areas.ambient /= dim_area;
+  return bright_areas;
 }
 
 }  // namespace clerestory

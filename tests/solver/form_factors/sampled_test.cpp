@@ -90,15 +90,6 @@ TEST(SampledVisibility, IsUnbiasedAndItsStandardErrorIsHonest) {
   check("by sets", 1 / 1.5, [&](std::uint64_t key) { return sample_visibility(from, to, rays, key, 1024); });
 }
 
-TEST(SampledVisibility, ErrorFallsFasterThanTheSquareRootOfTheRays) {
-  const auto error = [](int samples) {
-    return sampled_form_factor(kFloor, kCeiling, {screen(0.25, 0.75, 0.25, 0.75)}, samples, 7).std_error;
-  };
-  // 64 times the rays: 8 times less error if independent; stratification in four dimensions promises n^-0.625, 13
-  // times.
-  EXPECT_GT(error(1 << 10) / error(1 << 16), 8);
-}
-
 TEST(SampledVisibility, EveryOccludedReferenceRowWithinItsOwnStandardError) {
   int rows = 0;
   for (const auto& row : test::reference_rows()) {

@@ -115,17 +115,6 @@ TEST(Hierarchical, TheSameBitsForOneAndTwoThreads) {
   EXPECT_EQ(one.solution.energy.absorbed, two.solution.energy.absorbed);
 }
 
-TEST(Hierarchical, ErrorFallsWithTheRaysAtLeastAsOneOverTheRoot) {
-  const Room room(lamp_room(0.5, 8));
-  const Solution reference = room.solve({.bundle_rays = 8192, .lamp_rays = 8192, .tolerance = 1e9, .seed = 7}).solution;
-  std::vector<double> error;
-  for (const int rays : {32, 512})
-    error.push_back(rms_error(
-        room.patches, room.solve({.bundle_rays = rays, .lamp_rays = rays, .tolerance = 1e9}).solution.E, reference));
-  // Sixteen times the rays: a quarter of the error or less. Sources merged to nodes leave a floor below 0.3 %.
-  EXPECT_LT(error[1], error[0] / 4 + 0.003);
-}
-
 TEST(Hierarchical, ATighterToleranceBringsTheWholeFieldNearerToTheTruth) {
   const Room room(lamp_room(0.5, 6));
   // The truth on elements that are finer than what either run makes: E of a point is that of the element it lies in.

@@ -162,25 +162,6 @@ TEST(Shoot, GivesTheSameBitsForAnyThreadCount) {
   EXPECT_EQ(one.E.value, two.E.value);
 }
 
-TEST(Shoot, ErrorFallsWithTheRaysAtLeastAsFastAsRandomSampling) {
-  // Against paths: sixteen times the rays must take the rms difference to less than 0.4 of it (a quarter for
-  // independent rays; the floor is the reference's own noise of about 0.7 %).
-  const Prepared room(cube(0.5, 4));
-  const Illumination light(room.problem);
-  const Solution reference = path_trace(light, direct_light(light, {}), measure_closure(room.patches, room.rays, 64, 1),
-                                        {.paths = 16384, .seed = 9});
-  const auto rms = [&](double rays) {
-    const Solution s = shoot_room(room, {.stop_fraction = 1e-4, .rays_per_patch = rays});
-    double sum = 0;
-    for (std::size_t i = 0; i < room.patches.patch_count(); ++i)
-      sum += room.patches.area[i] * std::pow(s.E[i][0] - reference.E[i][0], 2);
-    return std::sqrt(sum / room.patches.total_area()) / mean(room.patches, reference.E);
-  };
-  const double coarse = rms(64), fine = rms(1024);
-  EXPECT_LT(fine, 0.4 * coarse);
-  EXPECT_LT(fine, 0.02);
-}
-
 TEST(Path, AgreesWithTheExactMeanWithinItsStandardError) {
   for (const double rho : {0.0, 0.5, 0.9}) {
     const Prepared room(cube(rho));

@@ -119,9 +119,12 @@ TEST(Solve, TheReportHasEveryField) {
   EXPECT_EQ(report["stop"], "converged");
   EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
   EXPECT_GT(report["counts"]["rays"], 10'000);
-  const double emitted = report["energy"]["emitted"];
-  EXPECT_NEAR(report["energy"]["absorbed"].get<double>() + report["energy"]["escaped"].get<double>(), emitted,
-              0.05 * emitted);
+  // What is emitted is absorbed or escapes, as far as the exchanges are known: the share of a bundle of 128 stratified
+  // rays that escapes to 128^-3/4 / 2, that of 4,000 elements together to 2e-4. Four times that, rounded up.
+  const Json& energy = report["energy"];
+  const double emitted = energy["emitted"], absorbed = energy["absorbed"], escaped = energy["escaped"];
+  EXPECT_NEAR(absorbed + escaped, emitted, 1e-3 * emitted);
+  EXPECT_NEAR(energy["imbalance"].get<double>() * emitted, emitted - absorbed - escaped, 1e-9 * emitted);
 }
 
 TEST(Solve, TheHierarchyIsCounted) {
@@ -346,8 +349,16 @@ TEST(Solve, QuietSaysNothingAndTheLogSaysAll) {
 
 /// Paths go over all elements in rounds; from the first of them on there is something to write.
 std::vector<std::string> solve_by_paths(const std::string& output, const std::string& max_element) {
-  return {"solve", shipped_scene("office.json"), "-o",     output, "--method", "path", "--accuracy",
-          "draft", "--max-element",              max_element};
+  return {"solve",
+          shipped_scene("office.json"),
+          "-o",
+          output,
+          "--method",
+          "path",
+          "--accuracy",
+          "draft",
+          "--max-element",
+          max_element};
 }
 
 /// A solve with half a minute of paths before it.

@@ -1,8 +1,9 @@
 // The mean of a picture over the cells of an area, one point a cell.
 
+#include "solver/sampling/area_cells.h"
+
 #include <gtest/gtest.h>
 
-#include "solver/sampling/area_cells.h"
 #include "tests/convergence/slope.h"
 
 namespace clerestory {

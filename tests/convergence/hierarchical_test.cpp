@@ -1,9 +1,10 @@
 // The hierarchical method against its rays and its tolerance.
 
+#include "solver/methods/hierarchical.h"
+
 #include <gtest/gtest.h>
 
 #include "solver/form_factors/point_to_polygon.h"
-#include "solver/methods/hierarchical.h"
 #include "solver/model/random_stream.h"
 #include "solver/sampling/unit_square.h"
 #include "tests/convergence/slope.h"
@@ -22,9 +23,9 @@ HierarchicalSolution solve(const PatchSet& patches, const HierarchyOptions& opti
 }
 
 TEST(Hierarchical, ErrsLessByTheRaysAtLeastByTheRoot) {
-  // Rays of a bundle are stratified: -3/4 where they see edges (gather_test.cpp), -1/2 of independent rays at the least,
-  // for what goes round several times. More than 1,500 elements, as fewer of them get more rays than they were given.
-  // The reference has eight times the most rays: at -1/2 its own errors add 6 % to the last, 0.03 to the slope.
+  // Rays of a bundle are stratified: -3/4 where they see edges (gather_test.cpp), -1/2 of independent rays at the
+  // least, for what goes round several times. More than 1,500 elements, as fewer of them get more rays than they were
+  // given. The reference has eight times the most rays: at -1/2 its own errors add 6 % to the last, 0.03 to the slope.
   test::PatchBuilder b(0.6);
   b.box({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {12, 12, 12}, true);
   b.material(0.3, 5).box({1, 1, 1}, {0.8, 0, 0}, {0, 0.8, 0}, {0, 0, 0.8}, {2, 2, 2}, false);

@@ -15,7 +15,10 @@ TEST(Paths, ErrLessByTheRootOfTheirNumber) {
   constexpr double kRho = 0.7;
   test::PatchBuilder b(kRho);
   b.box({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2.5}, {1, 1, 1}, true);
-  b.material(kRho, 100).rectangle({1, 1, 1}, {1, 0, 0}, {0, 1, 0}).material(kRho).rectangle({1, 1, 0.99}, {0, 1, 0}, {1, 0, 0});
+  b.material(kRho, 100)
+      .rectangle({1, 1, 1}, {1, 0, 0}, {0, 1, 0})
+      .material(kRho)
+      .rectangle({1, 1, 0.99}, {0, 1, 0}, {1, 0, 0});
   const PatchSet patches = b.build();
   const RayScene rays(patches);
   const Lights none;

@@ -1,5 +1,5 @@
 // A small stand-in for libFuzzer: mutates the files of a corpus for a while, always in the same order.
-//   fuzz_ply [--seconds 1] [--seed 1] CORPUS_FOLDER    or    fuzz_ply FILE   to try one input again
+//   fuzz_ply [--inputs 300] [--seconds 0] [--seed 1] CORPUS_FOLDER    or    fuzz_ply FILE   to try one input again
 
 #include <algorithm>
 #include <chrono>

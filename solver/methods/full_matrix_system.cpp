@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "solver/model/assert.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
@@ -47,6 +48,8 @@ FullMatrixSystem::FullMatrixSystem(const PatchSet& patches, const FormFactorMatr
       E_direct_(E_direct),
       n_(patches.patch_count()),
       channels_(patches.channels) {
+  CLERESTORY_ASSERT(F.n, ==, n_);
+  CLERESTORY_ASSERT(E_direct.size(), ==, n_);
   const auto channel_count = static_cast<std::size_t>(channels_);
   if (!patches.tau.value.empty()) tau = by_channel(patches.tau);
   source = by_channel(patches.M);
@@ -159,6 +162,7 @@ Solution FullMatrixSystem::finish(std::string method) const {
     solution.energy.absorbed += flux(absorbed);
     solution.energy.escaped += flux(escaped);
   }
+  CLERESTORY_ASSERT(all_finite(solution.B), ==, true);
   solution.rays = F_.rays;
   return solution;
 }

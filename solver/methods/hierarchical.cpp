@@ -132,7 +132,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   const Problem problem{leaves, whole.rays, whole.lights};
   const std::size_t n = leaves.patch_count();
 
-  if (options.oracle == HierarchyOptions::Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
+  if (options.oracle == Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
   quality.direct.rough_first = false;  // a round that is stopped is not shown
   DirectLight direct = direct_light(Illumination(problem), quality.direct, monitor);
   if (monitor.should_stop()) return round;
@@ -152,7 +152,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
   Transport transport;
-  if (options.oracle == HierarchyOptions::Oracle::error) {
+  if (options.oracle == Oracle::error) {
     transport = trace_links(light, tree, before ? glow : Field{}, direct, quality.links, monitor);
   } else {
     double first_flux = 0;
@@ -242,7 +242,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     const std::string name = "round " + std::to_string(number);
     going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), monitor));
     if (!going) break;
-    if (options.oracle == HierarchyOptions::Oracle::bf) {
+    if (options.oracle == Oracle::bf) {
       // Each round refines by the light that the last one found.
       if (mesh.leaf_count() + 4 * last->to_halve.size() <= options.most_elements) mesh.split(last->to_halve);
       continue;

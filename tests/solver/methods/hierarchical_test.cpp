@@ -261,8 +261,8 @@ TEST(Hierarchical, ClassicRefinementAndTheFullMatrixAgree) {
       gauss_seidel(room.patches, form_factor_matrix(room.patches, room.rays), Field(room.patches.patch_count(), 1));
   double last = 1, links = 0;
   for (const double tolerance : {30.0, 1.0, 0.03}) {
-    const HierarchicalSolution h = room.solve(
-        {.oracle = HierarchyOptions::Oracle::bf, .tolerance = tolerance, .shortest_edge = 10});  // none is halved
+    const HierarchicalSolution h =
+        room.solve({.oracle = Oracle::bf, .tolerance = tolerance, .shortest_edge = 10});  // none is halved
     ASSERT_EQ(h.elements.patch_count(), room.patches.patch_count());
     const double error = rms_error(room.patches, h.solution.E, exact).value;
     EXPECT_LT(error, last) << "tolerance " << tolerance;

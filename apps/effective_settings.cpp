@@ -12,6 +12,7 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   Settings s = settings_of(scene);
   if (arguments.method) s.solve.method = method_named(*arguments.method);
   if (arguments.accuracy) s.solve.accuracy = accuracy_named(*arguments.accuracy);
+  if (arguments.oracle) s.solve.oracle = oracle_named(*arguments.oracle);
   if (common.seed) s.solve.seed = *common.seed;
   if (arguments.max_element) s.max_element = arguments.max_element;
   if (arguments.target_error) s.target_error = arguments.target_error;
@@ -29,6 +30,8 @@ std::vector<Figure> as_figures(const Settings& s, int channels, const ReadOption
                              {"channels", static_cast<long long>(channels)},
                              {"seed", static_cast<long long>(s.solve.seed)},
                              {"tighten", static_cast<long long>(s.solve.tighten)}};
+  if (s.solve.method == Method::hierarchical)
+    out.push_back({"oracle", std::string(kOracleNames[static_cast<std::size_t>(s.solve.oracle)])});
   if (s.max_element) out.push_back({"max_element", *s.max_element});
   if (s.target_error) out.push_back({"target_error", *s.target_error});
   if (s.time_limit) out.push_back({"time_limit", *s.time_limit});

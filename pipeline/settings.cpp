@@ -23,14 +23,18 @@ Enum named(const std::string& name, std::span<const std::string_view> names) {
 
 std::string problem_with_method(const std::string& name) { return problem_with(name, kMethodNames, "method"); }
 std::string problem_with_accuracy(const std::string& name) { return problem_with(name, kAccuracyNames, "accuracy"); }
+std::string problem_with_oracle(const std::string& name) { return problem_with(name, kOracleNames, "oracle"); }
 Method method_named(const std::string& name) { return named<Method>(name, kMethodNames); }
 Accuracy accuracy_named(const std::string& name) { return named<Accuracy>(name, kAccuracyNames); }
+
+Oracle oracle_named(const std::string& name) { return named<Oracle>(name, kOracleNames); }
 
 Settings settings_of(const Scene& scene) {
   const SolverSettings& file = scene.settings;
   Settings s;
   if (file.method) s.solve.method = method_named(*file.method);
   if (file.accuracy) s.solve.accuracy = accuracy_named(*file.accuracy);
+  if (file.oracle) s.solve.oracle = oracle_named(*file.oracle);
   if (file.seed) s.solve.seed = *file.seed;
   s.max_element = file.max_element;
   s.target_error = file.target_error;

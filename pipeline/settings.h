@@ -26,11 +26,13 @@ struct Settings {
 /// The defaults, with what the scene's file says.
 Settings settings_of(const Scene& scene);
 
-/// Why a name is not a method or an accuracy, with the nearest one; empty when it is.
+/// Why a name is not a method, an accuracy or an oracle, with the nearest one; empty when it is.
 std::string problem_with_method(const std::string& name);
 std::string problem_with_accuracy(const std::string& name);
+std::string problem_with_oracle(const std::string& name);
 /// By a known name.
 Method method_named(const std::string& name);
 Accuracy accuracy_named(const std::string& name);
+Oracle oracle_named(const std::string& name);
 
 }  // namespace clerestory

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
@@ -21,19 +22,25 @@ struct Include {
   bool own = false;    ///< in quotes
 };
 
-std::vector<Include> all_includes() {
+/// Sources and headers, relative to the root.
+std::vector<std::string> own_files() {
   const fs::path root = CLERESTORY_SOURCE_DIR;
+  std::vector<std::string> files;
+  for (const char* folder : {"solver", "meshing", "io", "pipeline", "apps"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
+        files.push_back(fs::relative(entry.path(), root).generic_string());
+  return files;
+}
+
+std::vector<Include> all_includes() {
   const std::regex line_of_include(R"re(\s*#\s*include\s*([<"])([^>"]+)[>"].*)re");
   std::vector<Include> includes;
-  for (const char* folder : {"solver", "meshing", "io", "pipeline", "apps"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
-      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-      std::ifstream in(entry.path());
-      for (std::string line; std::getline(in, line);) {
-        std::smatch part;
-        if (std::regex_match(line, part, line_of_include))
-          includes.push_back({fs::relative(entry.path(), root).generic_string(), part[2], part[1] == "\""});
-      }
+  for (const std::string& file : own_files()) {
+    std::ifstream in(fs::path(CLERESTORY_SOURCE_DIR) / file);
+    for (std::string line; std::getline(in, line);) {
+      std::smatch part;
+      if (std::regex_match(line, part, line_of_include)) includes.push_back({file, part[2], part[1] == "\""});
     }
   }
   return includes;
@@ -129,6 +136,42 @@ TEST(Layers, HeadersForUsersOfTheLibraryShowNoLibrary) {
   for (const Include& i : all_includes()) {
     if (i.own || !i.file.ends_with(".h") || !starts_with_any(i.file, doors)) continue;
     EXPECT_TRUE(is_standard(i.header)) << i.file << " includes <" << i.header << ">";
+  }
+}
+
+TEST(Names, NoTwoHeadersShareOne) {
+  std::map<std::string, std::string> by_name;
+  for (const std::string& file : own_files()) {
+    if (!file.ends_with(".h")) continue;
+    const auto [other, is_new] = by_name.try_emplace(fs::path(file).filename(), file);
+    EXPECT_TRUE(is_new) << file << " and " << other->second;
+  }
+}
+
+TEST(Names, NoTwoTypesInHeadersShareOne) {
+  // Two definitions of one name in a namespace break the one-definition rule, and no compiler tells.
+  const std::regex definition(R"((?:struct|class|enum class|enum) (?:\[\[.*\]\] )?([A-Z][A-Za-z0-9]*)\b[^;]*\{.*)");
+  std::map<std::string, std::string> by_name;
+  for (const std::string& file : own_files()) {
+    if (!file.ends_with(".h")) continue;
+    std::ifstream in(fs::path(CLERESTORY_SOURCE_DIR) / file);
+    for (std::string line; std::getline(in, line);) {
+      std::smatch part;
+      if (!std::regex_match(line, part, definition)) continue;
+      const auto [other, is_new] = by_name.try_emplace(part[1], file);
+      EXPECT_TRUE(is_new) << part[1] << " in " << file << " and " << other->second;
+    }
+  }
+  EXPECT_GT(by_name.size(), 100u) << "the headers were not found";
+}
+
+TEST(Materials, AreAskedWhatTheyDoAndNotOfWhatKindTheyAre) {
+  for (const std::string& file : own_files()) {
+    if (file.starts_with("io/") || file == "solver/model/material.h") continue;  // readers say which kind it is
+    std::ifstream in(fs::path(CLERESTORY_SOURCE_DIR) / file);
+    for (std::string line; std::getline(in, line);)
+      EXPECT_TRUE(line.find("MaterialKind::") == line.npos || file == "apps/commands/formfactors.cpp")
+          << file << ": " << line;
   }
 }
 

@@ -129,6 +129,8 @@ void add_solve_command(CLI::App& program, Task& task) {
       "hierarchical, progressive, gauss-seidel, jacobi, or path, the unbiased reference (default: hierarchical)");
   add_checked_word(command, "--accuracy", s.accuracy, problem_with_accuracy,
                    "draft, standard or fine (default: standard)");
+  add_checked_word(command, "--oracle", s.oracle, problem_with_oracle,
+                   "by what the hierarchical method refines: error, or bf, the classic flux at stake (default: error)");
   add_positive_option(command, "--target-error", s.target_error, "SHARE",
                       "go on until the measured RMS relative error is below this, 0.02 for 2 %");
   add_positive_option(command, "--time-limit", s.time_limit, "S", "stop solving after so many seconds");

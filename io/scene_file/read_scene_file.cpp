@@ -99,6 +99,7 @@ SolverSettings read_settings(const JsonObject& object) {
   SolverSettings settings;
   settings.method = object.choice("method", kMethodNames);
   settings.accuracy = object.choice("accuracy", kAccuracyNames);
+  settings.oracle = object.choice("oracle", kOracleNames);
   settings.max_element =
       object.number("max_element", {.low = 0, .low_allowed = false, .advice = "it is an edge in metres"});
   settings.target_error =
@@ -144,9 +145,9 @@ Scene read_scene_file(const std::filesystem::path& file) {
   read_luminaire_entries(root, name, folder, channels, scene.lights, scene.warnings);
   scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
-    scene.settings = read_settings(
-        JsonObject(root.at("solver"), name + ": solver",
-                   {"method", "accuracy", "max_element", "target_error", "time_limit", "memory_limit", "seed"}));
+    scene.settings = read_settings(JsonObject(
+        root.at("solver"), name + ": solver",
+        {"method", "accuracy", "oracle", "max_element", "target_error", "time_limit", "memory_limit", "seed"}));
   }
   if (root.has("sensors")) scene.sensors = read_sensor_entries(root.at("sensors"), name, folder);
   read_geometry(root, name, folder, rules, scene);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+#include "solver/model/assert.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/polygon_view.h"
@@ -381,6 +382,9 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
     at.delta_light = light.sampler.delta_light(p, n, pattern.quality().sun_rays, pattern.sun_key());
     at.E += at.delta_light;
   }
+  CLERESTORY_ASSERT(all_finite(at.E), ==, true);
+  CLERESTORY_ASSERT(at.E.min(), >=,
+                    -1e-6 * at.E.max());  // what differs from a plan's mean may be less than nothing by rounding
   return at;
 }
 

@@ -4,6 +4,8 @@
 #include <cstdio>
 
 #include "solver/hierarchy/gather_links.h"
+#include "solver/model/assert.h"
+#include "solver/model/units.h"
 #include "solver/spaces/energy.h"
 
 namespace clerestory {
@@ -99,6 +101,7 @@ Solution balance(const PatchSet& patches, const ElementTree& tree, const Transpo
     ++s.iterations;
   }
   log();
+  CLERESTORY_ASSERT(all_finite(system.FB), ==, true);
 
   const std::size_t n = patches.patch_count();
   s.E = s.B = Field(n, patches.channels);

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostReceivers = 200'000;
 
 struct LinkOptions {
   int bundle_rays = 256;
-  int bright_rays = 128;        ///< pairs with bright sources, a multiple of 16
+  int bright_rays = 128;        ///< pairs with bright sources
   double uniform = 0.01;        ///< hits are linked at the highest node whose B varies by less than this share of
                                 ///< E_p; 0: at the leaf they met
   double cluster_diameter = 0;  ///< nodes of up to 32 leaves within this receive together [m]

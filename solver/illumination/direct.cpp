@@ -5,6 +5,7 @@
 
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
+#include "solver/model/assert.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
@@ -309,6 +310,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   const std::size_t n = problem.patches.patch_count();
   DirectLight direct;
   direct.E = Field(n, problem.patches.channels);
+  CLERESTORY_ASSERT(options.shadow_rays, >, 0);
   if (lights.empty()) return direct;
 
   const double far_away = 4 * problem.rays.diameter();
@@ -355,6 +357,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     }
     direct.rays += direct.openings.number.size() * static_cast<std::size_t>(kRaysOfOpening);
   }
+  CLERESTORY_ASSERT(all_finite(direct.E), ==, true);
   direct.rays += n * static_cast<std::size_t>(options.shadow_rays) * (lights.luminaires.size() + lights.suns.size());
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
   balance_luminaires(problem, direct, options);

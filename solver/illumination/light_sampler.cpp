@@ -7,6 +7,7 @@
 
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
+#include "solver/model/assert.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
@@ -120,6 +121,7 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
   if (kernel == 0) return {};
   const Vec3 d = point - p;
   const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
+  CLERESTORY_ASSERT(cos_q, >, 0);
   return {point + normal * problem_.rays.lift(), glow_[q] * (kernel * area / probability),
           probability * r2 / (cos_q * area), q};
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "solver/model/assert.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 
@@ -46,6 +47,8 @@ FullMatrixSystem::FullMatrixSystem(const PatchSet& patches, const FormFactorMatr
       E_direct_(E_direct),
       n_(patches.patch_count()),
       channels_(patches.channels) {
+  CLERESTORY_ASSERT(F.n, ==, n_);
+  CLERESTORY_ASSERT(E_direct.size(), ==, n_);
   const auto channel_count = static_cast<std::size_t>(channels_);
   if (!patches.tau.value.empty()) tau = by_channel(patches.tau);
   source = by_channel(patches.M);
@@ -152,6 +155,7 @@ Solution FullMatrixSystem::finish(std::string method) const {
     solution.energy += where_light_ends(patches_, i, solution.E[i], B_i, losses_of(i));
   }
   solution.energy.emitted = total_flux(patches_, patches_.M) + total_flux(patches_, E_direct_);
+  CLERESTORY_ASSERT(all_finite(solution.B), ==, true);
   solution.rays = F_.rays;
   return solution;
 }

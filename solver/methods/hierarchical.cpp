@@ -43,14 +43,14 @@ struct Quality {
 
 Quality coarse(const HierarchyOptions& o) {
   return {{.bundle_rays = std::max(32, o.bundle_rays / 4), .bright_rays = 16, .uniform = 0.02, .seed = o.seed + 1},
-          {.bright_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
+          {.shadow_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
           1e-3};
 }
 Quality full(const HierarchyOptions& o, std::size_t leaves) {
   int bundle = o.bundle_rays, pairs = o.bright_rays;
   for (std::size_t n = leaves; n < kFewLeaves && bundle < kMostOfOne; n *= 2) bundle *= 2, pairs *= 2;
   return {{.bundle_rays = bundle, .bright_rays = pairs, .seed = o.seed},
-          {.bright_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
+          {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
           o.residual};
 }
 
@@ -133,7 +133,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   const Problem problem{leaves, whole.rays, whole.lights};
   const std::size_t n = leaves.patch_count();
 
-  if (options.oracle == HierarchyOptions::Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
+  if (options.oracle == Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
   quality.direct.rough_first = false;  // a round that is stopped is not shown
   DirectLight direct = direct_light(Illumination(problem), quality.direct, monitor);
   if (monitor.should_stop()) return round;
@@ -153,7 +153,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
   Transport transport;
-  if (options.oracle == HierarchyOptions::Oracle::error) {
+  if (options.oracle == Oracle::error) {
     transport = trace_links(light, tree, before ? glow : Field{}, direct, quality.links, monitor);
   } else {
     double first_flux = 0;
@@ -240,7 +240,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     const std::string name = "round " + std::to_string(number);
     going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), monitor));
     if (!going) break;
-    if (options.oracle == HierarchyOptions::Oracle::bf) {
+    if (options.oracle == Oracle::bf) {
       // Each round refines by the light that the last one found.
       if (mesh.leaf_count() + 4 * last->to_halve.size() <= options.most_elements) mesh.split(last->to_halve);
       continue;

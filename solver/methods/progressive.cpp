@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "solver/model/assert.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
@@ -153,6 +154,8 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
                const Monitor& monitor) {
   const PatchSet& p = problem.patches;
   const std::size_t n = p.patch_count();
+  CLERESTORY_ASSERT(direct.E.size(), ==, n);
+  CLERESTORY_ASSERT(options.stop_fraction, >, 0);
   Unshot light{p, direct.E, Field(n, p.channels)};
   for (std::size_t i = 0; i < n; ++i) light.dB.set(i, p.M[i] + p.scattered(direct.E, i));
 
@@ -230,6 +233,7 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
 
   // What is not shot by now is spread as ambient light, and balanced as such.
   shoot_ambient(light, closure, ambient_radiosity(light, closure));
+  CLERESTORY_ASSERT(all_finite(light.E), ==, true);
   solution.E = light.E;
   solution.B = Field(n, p.channels);
   // What patches sent and no patch received was counted ray by ray, which balances exactly; the closure's shares would

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -65,5 +66,11 @@ struct Field {
     for (int k = 0; k < channels; ++k) at(i, k) += s[k];
   }
 };
+
+/// Whether all values are numbers.
+inline bool all_finite(const Spectrum& s) { return std::isfinite(s[0]) && std::isfinite(s[1]) && std::isfinite(s[2]); }
+inline bool all_finite(const Field& field) {
+  return std::all_of(field.value.begin(), field.value.end(), [](double x) { return std::isfinite(x); });
+}
 
 }  // namespace clerestory

@@ -1,5 +1,5 @@
 #pragma once
-// The methods and accuracies there are, by the names that users type.
+// The methods, accuracies and oracles there are, by the names that users type.
 
 #include <string_view>
 
@@ -7,9 +7,13 @@ namespace clerestory {
 
 enum class Method { hierarchical, progressive, gauss_seidel, jacobi, path };
 enum class Accuracy { draft, standard, fine };
+/// By what the hierarchical method decides which elements to halve and where to link. error: by how much light varies
+/// inside of them, told by rays. bf: by the flux at stake on a link, rho_p F_pq B_q A_p, as the classic method has it.
+enum class Oracle { error, bf };
 
 /// In the order of the enumerators.
 inline constexpr std::string_view kMethodNames[] = {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"};
 inline constexpr std::string_view kAccuracyNames[] = {"draft", "standard", "fine"};
+inline constexpr std::string_view kOracleNames[] = {"error", "bf"};
 
 }  // namespace clerestory

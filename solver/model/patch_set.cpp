@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "solver/model/assert.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -64,6 +65,7 @@ double PatchSet::total_area() const { return std::accumulate(area.begin(), area.
 
 void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   PatchSet& p = patches;
+  CLERESTORY_ASSERT(wanted.size(), ==, 2 * p.triangle_count());
   p.triangle.clear();
   p.side.clear();
   p.area.clear();

@@ -38,7 +38,7 @@ struct PolygonSoup {
 
 /// Settings a scene file may hold under "solver"; a command line option wins over them.
 struct SolverSettings {
-  std::optional<std::string> method, accuracy;
+  std::optional<std::string> method, accuracy, oracle;
   std::optional<double> max_element;        ///< [m]
   std::optional<double> target_error;       ///< RMS relative [1]
   std::optional<double> time_limit;         ///< [s]

@@ -1,8 +1,11 @@
 #include "solver/model/vertex_lightmap.h"
 
+#include "solver/model/assert.h"
+
 namespace clerestory {
 
 void average_to_points(const PatchSet& patches, const Field& patch_E, VertexLightmap& lightmap) {
+  CLERESTORY_ASSERT(patch_E.size(), ==, patches.patch_count());
   lightmap.E = Field(lightmap.position.size(), patch_E.channels);
   std::vector<double> area(lightmap.position.size());
   for (std::size_t p = 0; p < patches.patch_count(); ++p)

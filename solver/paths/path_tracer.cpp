@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/model/assert.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
 #include "solver/sampling/two_estimators.h"
@@ -107,6 +108,7 @@ PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, cons
   constexpr int kReplicates = 8;
   const int in_each = (paths + kReplicates - 1) / kReplicates;
   PathSum replicates;
+  CLERESTORY_ASSERT(paths, >, 0);
   for (int r = 0; r < kReplicates; ++r) {
     const std::uint64_t replicate = stream_key(key, static_cast<std::uint64_t>(r));
     Spectrum sum(0.0);
@@ -117,6 +119,7 @@ PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, cons
     }
     replicates.add(sum / in_each);
   }
+  CLERESTORY_ASSERT(all_finite(replicates.sum_of_squares), ==, true);
   return {replicates.mean(), replicates.std_error()};
 }
 

@@ -42,14 +42,35 @@ std::optional<MemoryPlan> memory_plan(const PatchSet& patches, const VertexLight
   return plan_memory(whole(patches, points), wish, options.memory_limit);
 }
 
+FormFactorOptions matrix_options(const PatchSet& patches, const SolveOptions& options) {
+  FormFactorOptions matrix{.seed = options.seed};
+  if (options.memory_limit > 0) {
+    const std::size_t rest = predicted_memory(whole(patches, patches.patch_count()));
+    matrix.memory_limit = options.memory_limit > rest ? options.memory_limit - rest : 1;
+  }
+  return matrix;
+}
+
+/// Before anything is computed: what cannot be is no news to wait for.
+void require_possible(const Problem& problem, const SolveOptions& options) {
+  const bool by_matrix = options.method == Method::gauss_seidel || options.method == Method::jacobi;
+  const bool by_bf = options.method == Method::hierarchical && options.oracle == Oracle::bf;
+  if (by_matrix) require_matrix_fits(problem.patches.patch_count(), matrix_options(problem.patches, options));
+  if ((by_matrix || by_bf) && problem.rays.has_mirrors())
+    throw InputError("the scene has mirrors, which form factors do not see; use " +
+                     std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive or path"));
+}
+
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
                                  const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
   constexpr MemoryPlan kLeast{0, 0, 32, 16};
+  require_possible(problem, options);
   const Effort e = effort_of(options);
   const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeast);
   const double shortest_edge = e.shortest_edge * longest_edge;
   HierarchicalField field = hierarchical_field(problem, std::move(map),
-                                               {.elements = {.bundle_rays = plan.bundle_rays,
+                                               {.elements = {.oracle = options.oracle,
+                                                             .bundle_rays = plan.bundle_rays,
                                                              .bright_rays = plan.bright_rays,
                                                              .tolerance = e.element_tolerance,
                                                              .shortest_edge = shortest_edge,
@@ -69,23 +90,6 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
 void count_luminaires(EnergyBalance& energy, const PatchSet& patches, const DirectLight& direct) {
   energy += direct.energy;
   energy.emitted -= total_flux(patches, direct.E);  // what arrived of it is in there already
-}
-
-FormFactorOptions matrix_options(const PatchSet& patches, const SolveOptions& options) {
-  FormFactorOptions matrix{.seed = options.seed};
-  if (options.memory_limit > 0) {
-    const std::size_t rest = predicted_memory(whole(patches, patches.patch_count()));
-    matrix.memory_limit = options.memory_limit > rest ? options.memory_limit - rest : 1;
-  }
-  return matrix;
-}
-
-/// Before anything is computed: a matrix that cannot be is no news to wait for.
-void require_matrix(const Problem& problem, const SolveOptions& options) {
-  require_matrix_fits(problem.patches.patch_count(), matrix_options(problem.patches, options));
-  if (problem.rays.has_mirrors())
-    throw InputError(
-        "the scene has mirrors, which form factors do not see; use --method hierarchical, progressive or path");
 }
 
 /// Irradiance at places by the method of the solution.
@@ -113,7 +117,7 @@ bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const So
 
 Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor) {
   const Effort e = effort_of(options);
-  if (options.method == Method::gauss_seidel || options.method == Method::jacobi) require_matrix(problem, options);
+  require_possible(problem, options);
   const Illumination light(problem);
   DirectOptions direct_options = e.direct;
   direct_options.seed = options.seed;

@@ -18,6 +18,7 @@ namespace clerestory {
 struct SolveOptions {
   Method method = Method::hierarchical;
   Accuracy accuracy = Accuracy::standard;
+  Oracle oracle = Oracle::error;  ///< of the hierarchical method
   std::uint64_t seed = 1;
   std::size_t memory_limit = 0;  ///< the peak of the process stays below by making the result coarser [bytes]; 0: none
   int tighten = 0;               ///< times that the effort was raised to reach a target error (accuracy.h)

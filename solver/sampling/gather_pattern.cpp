@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "solver/model/assert.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/sampling/unit_square.h"
@@ -25,6 +26,8 @@ int RayBudget::deepest() const { return most_rays > rays ? least() + kMostHalvin
 
 Strata::Strata(const RayBudget& budget, std::uint64_t key, std::uint64_t pilot_key)
     : budget_(budget), deepest_(budget.deepest()) {
+  CLERESTORY_ASSERT(budget.grid % 8, ==, 0);
+  CLERESTORY_ASSERT(budget.rays, >=, budget.strata());
   const auto count = static_cast<std::uint32_t>(budget.strata());
   const auto stratum_at = [&](const auto& u) { return static_cast<std::size_t>(budget_.stratum_of(u[0], u[1])); };
   // Every run of grid x grid points of the sequence has one in each stratum.

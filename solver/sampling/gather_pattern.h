@@ -33,7 +33,7 @@ struct RayBudget {
 struct GatherQuality {
   RayBudget bundle;  ///< over the hemisphere
   AreaBudget area;   ///< to each opening and each bright area that matters
-  int bright_rays;   ///< shadow rays to bright patches, a multiple of 16
+  int bright_rays;   ///< shadow rays to bright patches
   int sun_rays;      ///< to each sun
 };
 

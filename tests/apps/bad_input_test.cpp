@@ -35,6 +35,7 @@ TEST_F(BadUsage, ExitsTwoAndSuggestsTheNearestName) {
   expect_refusal({"solve", scene_, "-o", out_, "--method", "progresive"}, 2, {"did you mean 'progressive'?"});
   expect_refusal({"solve", scene_, "-o", out_, "--method", "radiosity"}, 2, {"known are hierarchical, progressive"});
   expect_refusal({"solve", scene_, "-o", out_, "--accuracy", "finest"}, 2, {"did you mean 'fine'?"});
+  expect_refusal({"solve", scene_, "-o", out_, "--oracle", "fb"}, 2, {"'fb' is not known", "bf"});
   expect_refusal({"solve"}, 2, {"required"});
   expect_refusal({"solve", scene_}, 2, {"--output"});
   expect_refusal({"solve", scene_, "-o"}, 2, {"--output"});

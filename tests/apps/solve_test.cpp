@@ -1,11 +1,9 @@
 // clerestory solve, from the outside: files, exit codes, promises.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <numeric>
-#include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -121,12 +119,15 @@ TEST(Solve, TheReportHasEveryField) {
   EXPECT_EQ(report["stop"], "converged");
   EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
   EXPECT_GT(report["counts"]["rays"], 10'000);
-  const double emitted = report["energy"]["emitted"];
-  EXPECT_NEAR(report["energy"]["absorbed"].get<double>() + report["energy"]["escaped"].get<double>(), emitted,
-              0.05 * emitted);
+  // What is emitted is absorbed or escapes, as far as the exchanges are known: the share of a bundle of 128 stratified
+  // rays that escapes to 128^-3/4 / 2, that of 4,000 elements together to 2e-4. Four times that, rounded up.
+  const Json& energy = report["energy"];
+  const double emitted = energy["emitted"], absorbed = energy["absorbed"], escaped = energy["escaped"];
+  EXPECT_NEAR(absorbed + escaped, emitted, 1e-3 * emitted);
+  EXPECT_NEAR(energy["imbalance"].get<double>() * emitted, emitted - absorbed - escaped, 1e-9 * emitted);
 }
 
-TEST(Solve, TheHierarchyIsCountedAndEveryStageTimed) {
+TEST(Solve, TheHierarchyIsCounted) {
   const TempFolder folder;
   const ProgramRun run = solve(shipped_scene("cornell_box.json"), folder / "out.vtp",
                                {"--accuracy", "draft", "--report", folder / "report.json"});
@@ -144,14 +145,31 @@ TEST(Solve, TheHierarchyIsCountedAndEveryStageTimed) {
   EXPECT_EQ(counts["elements"], level.size());
   EXPECT_GT(counts["clusters"], 10);
   EXPECT_GT(counts["links"], counts["elements"]);
+}
 
-  const Json& seconds = report["seconds"];
-  double sum = 0;
-  for (const auto& [stage, time] : seconds.items()) {
-    if (stage != "total") sum += time.get<double>();
-    EXPECT_GE(time.get<double>(), stage == "direct" ? 0 : 1e-6) << stage;  // no sun and no luminaires here
+TEST(Solve, EveryStageIsTimedAndNothingOfConsequenceIsOutsideOfThem) {
+  // On a busy machine the program may be made to wait between two stages, in any one run. Work between them would be
+  // there in all, so the quietest of some runs tells; mostly it is the first.
+  const TempFolder folder;
+  double outside = 1;
+  for (int run = 0; run < 10 && outside > 0.05; ++run) {
+    ASSERT_EQ(solve(shipped_scene("cornell_box.json"), folder / "out.vtp",
+                    {"--accuracy", "draft", "--report", folder / "report.json"})
+                  .exit_code,
+              0);
+    const Json seconds = Json::parse(read_text(folder / "report.json"))["seconds"];
+    const double total = seconds["total"];
+    double sum = 0;
+    for (const auto& [stage, time] : seconds.items()) {
+      if (stage != "total") sum += time.get<double>();
+      EXPECT_GE(time.get<double>(), 0) << stage;
+    }
+    for (const char* stage : {"read", "mesh", "build", "refine", "gather", "reconstruct", "measure", "write"})
+      EXPECT_GT(seconds[stage], 0) << stage;
+    EXPECT_LE(sum, total * (1 + 1e-9)) << "stages are parts of the total, of one clock; a rounding of ten digits";
+    outside = 1 - sum / total;
   }
-  EXPECT_NEAR(sum, seconds["total"], 0.05 + 0.05 * sum);
+  EXPECT_LE(outside, 0.05);
 }
 
 TEST(Solve, TheDebugOutputShowsElementsLinksRaysAndErrors) {
@@ -329,25 +347,46 @@ TEST(Solve, QuietSaysNothingAndTheLogSaysAll) {
     EXPECT_NE(normal.out.find(word), std::string::npos) << word;
 }
 
-/// Starts a solve that would take minutes, and waits until it is well under way.
-void start_long_run_then(Program& program, int signal_number) {
-  for (int i = 0; i < 600 && program.running() && program.said().find('%') == std::string::npos; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  ASSERT_TRUE(program.running()) << program.said();
-  program.signal(signal_number);
+/// Paths go over all elements in rounds; from the first of them on there is something to write.
+std::vector<std::string> solve_by_paths(const std::string& output, const std::string& max_element) {
+  return {"solve",
+          shipped_scene("office.json"),
+          "-o",
+          output,
+          "--method",
+          "path",
+          "--accuracy",
+          "draft",
+          "--max-element",
+          max_element};
 }
 
-std::vector<std::string> long_run(const std::string& output) {
-  return {
-      "solve", shipped_scene("office.json"), "-o", output, "--method", "path", "--accuracy", "fine", "--max-element",
-      "0.1"};
-}
+/// A solve with half a minute of paths before it.
+class LongRun {
+ public:
+  explicit LongRun(const std::string& output) : program_(arguments(output)) {}
+
+  /// Sends the signal once paths are under way.
+  ProgramRun signalled(int number) {
+    EXPECT_TRUE(program_.waits_for("] paths", log())) << "it ended without";
+    program_.signal(number);
+    return program_.wait();
+  }
+
+ private:
+  std::string log() const { return elsewhere_ / "log"; }
+  std::vector<std::string> arguments(const std::string& output) const {
+    std::vector<std::string> words = solve_by_paths(output, "0.1");
+    words.insert(words.end(), {"--log", log()});
+    return words;
+  }
+  TempFolder elsewhere_;
+  Program program_;
+};
 
 TEST(Interrupt, CtrlCWritesWhatThereIsAndExitsFive) {
   const TempFolder folder;
-  Program program(long_run(folder / "out.vtp"));
-  start_long_run_then(program, SIGINT);
-  const ProgramRun run = program.wait();
+  const ProgramRun run = LongRun(folder / "out.vtp").signalled(SIGINT);
   EXPECT_EQ(run.exit_code, 5) << run.err;
   const ResultFile result = read_result(folder / "out.vtp");
   EXPECT_GT(result.triangles.size(), 10'000u);
@@ -360,21 +399,23 @@ TEST(Interrupt, CtrlCWritesWhatThereIsAndExitsFive) {
 TEST(Interrupt, AKilledRunLeavesNoHalfFileAndTheOldResultAlone) {
   const TempFolder folder;
   folder.write("out.vtp", "the result of yesterday");
-  Program program(long_run(folder / "out.vtp"));
-  start_long_run_then(program, SIGKILL);
-  EXPECT_EQ(program.wait().exit_code, 128 + SIGKILL);
+  EXPECT_EQ(LongRun(folder / "out.vtp").signalled(SIGKILL).exit_code, 128 + SIGKILL);
   EXPECT_EQ(read_text(folder / "out.vtp"), "the result of yesterday");
   EXPECT_EQ(folder.listing(), "out.vtp ");
 }
 
 TEST(TimeLimit, ReachedBeforeTheEndIsExitFourWithAResult) {
+  // No machine has done by then, so the first round of paths is all there is, on every machine.
   const TempFolder folder;
-  auto arguments = long_run(folder / "out.vtp");
-  arguments.insert(arguments.end(), {"--time-limit", "2"});
+  auto arguments = solve_by_paths(folder / "out.vtp", "0.3");
+  arguments.insert(arguments.end(), {"--time-limit", "0.001"});
   const ProgramRun run = run_program(arguments);
   EXPECT_EQ(run.exit_code, 4) << run.err;
-  EXPECT_NE(run.err.find("time limit of 2"), std::string::npos) << run.err;
-  EXPECT_EQ(read_result(folder / "out.vtp").texts.at("stop"), std::vector<std::string>{"time-limit"});
+  EXPECT_NE(run.err.find("time limit of 0.001"), std::string::npos) << run.err;
+  const ResultFile result = read_result(folder / "out.vtp");
+  EXPECT_EQ(result.texts.at("stop"), std::vector<std::string>{"time-limit"});
+  const auto& E = result.of_cells.at("irradiance").values;
+  EXPECT_GT(*std::max_element(E.begin(), E.end()), 0);
 }
 
 TEST(TargetError, IsReachedByRefiningOrSaidToBeMissed) {
@@ -386,6 +427,7 @@ TEST(TargetError, IsReachedByRefiningOrSaidToBeMissed) {
   EXPECT_LE(Json::parse(read_text(folder / "r.json"))["error"]["rms_relative"], 0.2);
   const ProgramRun hard = solve(shipped_scene("cornell_box.json"), folder / "out.vtp",
                                 {"--grey", "--accuracy", "draft", "--target-error", "1e-9", "--time-limit", "3"});
+  // Missed whether rounds or the time end first; the limit only keeps the test short.
   EXPECT_EQ(hard.exit_code, 4) << hard.err;
   EXPECT_GT(read_result(folder / "out.vtp").triangles.size(), 0u);
 }

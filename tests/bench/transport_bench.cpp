@@ -81,10 +81,11 @@ int run() {
   row("progressive: rays", static_cast<double>(s.rays) * 1e-6, "million", "");
 
   set_thread_count(2);
+  DirectLight none_direct;
+  none_direct.E = Field(patches.patch_count(), 1);
   const double start = seconds();
   const Solution reference =
-      path_trace(light, {Field(patches.patch_count(), 1), {}, 0}, measure_closure(problem.patches, problem.rays, 64, 1),
-                 {.paths = 1024, .seed = 7});
+      path_trace(light, none_direct, measure_closure(problem.patches, problem.rays, 64, 1), {.paths = 1024, .seed = 7});
   const double path_time = seconds() - start;
   double difference = 0, noise = 0, mean = 0, area = 0;
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {

@@ -7,13 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/cases/solve_case.h"
+#include "tests/support/reference_table.h"
 
 namespace clerestory::test {
 namespace {
 
 namespace fs = std::filesystem;
 const fs::path kCases = fs::path(CLERESTORY_SOURCE_DIR) / "tests" / "cases";
-const fs::path kReference = fs::path(CLERESTORY_SOURCE_DIR) / ".." / "shared" / "reference";
 
 std::vector<std::string> names_of_cases() {
   std::vector<std::string> names;
@@ -47,7 +47,7 @@ struct OfConfig {
 
 std::vector<OfConfig> table_of(const CaseFolder& folder) {
   std::vector<OfConfig> table;
-  for (const CaseScene& scene : folder.scenes(kReference)) {
+  for (const CaseScene& scene : folder.scenes(reference_folder())) {
     const std::vector<double> values = solve_case(folder, scene);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const CsvRow& row = scene.rows[i];
@@ -66,7 +66,6 @@ std::vector<OfConfig> table_of(const CaseFolder& folder) {
 class Case : public testing::TestWithParam<std::string> {};
 
 TEST_P(Case, HoldsItsNumbers) {
-  if (!fs::exists(kReference)) GTEST_SKIP() << "no ../shared/reference beside this checkout";
   const CaseFolder folder = read_case(kCases / GetParam());
   const std::vector<OfConfig> table = table_of(folder);
   ASSERT_FALSE(table.empty());

@@ -1,5 +1,5 @@
 // A small stand-in for libFuzzer: mutates the files of a corpus for a while, always in the same order.
-//   fuzz_ply [--seconds 1] [--seed 1] CORPUS_FOLDER    or    fuzz_ply FILE   to try one input again
+//   fuzz_ply [--inputs 300] [--seconds 0] [--seed 1] CORPUS_FOLDER    or    fuzz_ply FILE   to try one input again
 
 #include <algorithm>
 #include <chrono>
@@ -86,12 +86,14 @@ int run(const std::string& input) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  double seconds = 1;
-  std::uint64_t seed = 1;
+  double seconds = 0;
+  std::uint64_t inputs = 300, seed = 1;
   std::filesystem::path from;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--seconds") == 0 && i + 1 < argc) {
       seconds = std::atof(argv[++i]);
+    } else if (std::strcmp(argv[i], "--inputs") == 0 && i + 1 < argc) {
+      inputs = std::strtoull(argv[++i], nullptr, 10);
     } else if (std::strcmp(argv[i], "--seed") == 0 && i + 1 < argc) {
       seed = std::strtoull(argv[++i], nullptr, 10);
     } else {
@@ -99,7 +101,7 @@ int main(int argc, char** argv) try {
     }
   }
   if (from.empty()) {
-    std::fprintf(stderr, "usage: %s [--seconds 1] [--seed 1] CORPUS_FOLDER | FILE\n", argv[0]);
+    std::fprintf(stderr, "usage: %s [--inputs 300] [--seconds 0] [--seed 1] CORPUS_FOLDER | FILE\n", argv[0]);
     return 2;
   }
   if (!std::filesystem::is_directory(from)) return run(bytes_of(from));
@@ -115,7 +117,7 @@ int main(int argc, char** argv) try {
   }
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   double slowest = 0;
-  for (std::uint64_t n = 0; std::chrono::steady_clock::now() < end; ++n) {
+  for (std::uint64_t n = 0; n < inputs || std::chrono::steady_clock::now() < end; ++n) {
     RandomStream random(seed, n);
     std::string input = corpus[below(random, corpus.size())];
     for (std::size_t k = 1 + below(random, 6); k-- > 0;) mutate(input, corpus, random);

@@ -1,13 +1,12 @@
 #pragma once
-// Rows of ../shared/reference/cie171.csv, where that folder lies beside the checkout.
+// Rows of tests/reference/cie171.csv.
 
-#include <filesystem>
-#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "solver/model/vec.h"
-#include "tests/support/csv_rows.h"
+#include "tests/support/reference_table.h"
 
 namespace clerestory::test {
 
@@ -19,23 +18,19 @@ struct Cie171Row {
 };
 
 inline std::vector<Cie171Row> cie171_rows(const std::string& test_case) {
-  std::ifstream file(std::filesystem::path(CLERESTORY_SOURCE_DIR) / ".." / "shared" / "reference" / "cie171.csv");
   std::vector<Cie171Row> rows;
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    const std::vector<std::string> cells = csv_cells(line);
-    if (cells.size() < 13 || cells[0] != test_case) continue;
-    const auto number = [&](std::size_t k) { return cells[k].empty() ? 0.0 : std::stod(cells[k]); };
-    Cie171Row row{
-        cells[0],  cells[1],  cells[3], {}, {number(4), number(5), number(6)}, {number(7), number(8), number(9)},
-        cells[10], number(12)};
-    if (!cells[2].empty()) {
-      std::size_t x = 0, y = 0;
-      row.sun.x = std::stod(cells[2], &x);
-      row.sun.y = std::stod(cells[2].substr(x), &y);
-      row.sun.z = std::stod(cells[2].substr(x + y));
-    }
+  for (CsvRow& cell : reference_table("cie171.csv")) {
+    if (cell["case"] != test_case) continue;
+    const auto number = [&](const char* column) { return cell[column].empty() ? 0.0 : std::stod(cell[column]); };
+    Cie171Row row{cell["case"],
+                  cell["config"],
+                  cell["point"],
+                  {},
+                  {number("x"), number("y"), number("z")},
+                  {number("nx"), number("ny"), number("nz")},
+                  cell["quantity"],
+                  number("value")};
+    std::istringstream(cell["sun_direction"]) >> row.sun.x >> row.sun.y >> row.sun.z;
     rows.push_back(row);
   }
   return rows;

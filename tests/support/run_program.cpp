@@ -1,5 +1,8 @@
 #include "tests/support/run_program.h"
 
+#include <chrono>
+#include <thread>
+
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -43,6 +46,14 @@ bool Program::running() {
   if (process_ < 0) return false;
   if (::waitpid(process_, &status_, WNOHANG) == process_) process_ = -1;
   return process_ >= 0;
+}
+
+bool Program::waits_for(const std::string& text, const std::string& file) {
+  while (read_text(file).find(text) == std::string::npos) {
+    if (!running()) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));  // only how often it looks
+  }
+  return true;
 }
 
 ProgramRun Program::wait() {

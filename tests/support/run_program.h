@@ -24,9 +24,9 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void signal(int number) const;
-  /// What it has said on standard error so far.
-  std::string said() const { return read_text(folder_ / "err"); }
   bool running();
+  /// Waits until `file` holds `text`; false when the run ends before.
+  bool waits_for(const std::string& text, const std::string& file);
   ProgramRun wait();
 
  private:

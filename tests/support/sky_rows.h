@@ -1,12 +1,10 @@
 #pragma once
-// Rows of ../shared/reference/skies.csv, where that folder lies beside the checkout.
+// Rows of tests/reference/skies.csv.
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
-#include "tests/support/csv_rows.h"
+#include "tests/support/reference_table.h"
 
 namespace clerestory::test {
 
@@ -16,15 +14,10 @@ struct SkyRow {
 };
 
 inline std::vector<SkyRow> sky_rows(const std::string& group) {
-  std::ifstream file(std::filesystem::path(CLERESTORY_SOURCE_DIR) / ".." / "shared" / "reference" / "skies.csv");
   std::vector<SkyRow> rows;
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    const std::vector<std::string> cells = csv_cells(line);
-    if (cells.size() > 5 && cells[0] == group)
-      rows.push_back({cells[0], cells[1], cells[2], cells[3], std::stod(cells[5])});
-  }
+  for (CsvRow& cell : reference_table("skies.csv"))
+    if (cell["group"] == group)
+      rows.push_back({cell["group"], cell["model"], cell["config"], cell["quantity"], std::stod(cell["value"])});
   return rows;
 }
 

@@ -1,15 +1,12 @@
 #pragma once
-// Rows of ../shared/reference/form_factors.csv, where that folder lies beside the checkout.
+// Rows of tests/reference/form_factors.csv.
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "solver/model/vec.h"
-#include "tests/support/csv_rows.h"
+#include "tests/support/reference_table.h"
 
 namespace clerestory::test {
 
@@ -42,22 +39,18 @@ inline Vec3 read_vector(const std::string& params, const std::string& key) {
   return v;
 }
 
-inline std::filesystem::path reference_file() {
-  return std::filesystem::path(CLERESTORY_SOURCE_DIR) / ".." / "shared" / "reference" / "form_factors.csv";
-}
-
 inline std::vector<ReferenceRow> reference_rows() {
   std::vector<ReferenceRow> rows;
-  std::ifstream file(reference_file());
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    const std::vector<std::string> cells = csv_cells(line);
-    if (cells.size() < 11) continue;
-    ReferenceRow row{
-        cells[0], cells[1], cells[2], cells[3], std::stod(cells[4]), read_polygon(cells[8]), read_polygon(cells[9]),
-        {}};
-    std::istringstream occluders(cells[10]);
+  for (CsvRow& cell : reference_table("form_factors.csv")) {
+    ReferenceRow row{cell["id"],
+                     cell["family"],
+                     cell["params"],
+                     cell["quantity"],
+                     std::stod(cell["value"]),
+                     read_polygon(cell["polygon1"]),
+                     read_polygon(cell["polygon2"]),
+                     {}};
+    std::istringstream occluders(cell["occluders"]);
     for (std::string one; std::getline(occluders, one, '|');) row.occluders.push_back(read_polygon(one));
     rows.push_back(row);
   }

@@ -61,7 +61,6 @@ TEST(GlassSheet, TheTableIsWithinItsPrecision) {
 
 TEST(GlassSheet, MatchesTheAnglesOfCie171Case5) {
   const auto rows = test::cie171_rows("5.5");
-  if (rows.empty()) GTEST_SKIP() << "no ../shared/reference/cie171.csv";
   int compared = 0;
   for (const auto& row : rows) {
     const bool absorbs = row.config.find("0.958") != std::string::npos;
@@ -187,7 +186,6 @@ class GlazedOpening : public testing::TestWithParam<const char*> {};
 
 TEST_P(GlazedOpening, MatchesCie171) {
   const auto rows = test::cie171_rows(GetParam());
-  if (rows.empty()) GTEST_SKIP() << "no ../shared/reference/cie171.csv";
   double mean = 0, worst = 0;
   int compared = 0;
   for (const auto& row : rows) {

@@ -11,9 +11,9 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kLanes = 16;
-constexpr std::size_t kQuickSamples = 64;
-constexpr std::size_t kSets = 16;
+constexpr std::size_t kLanes = 16;         // of a packet
+constexpr std::size_t kQuickSamples = 64;  // of a pair at first: four packets
+constexpr std::size_t kSets = 16;          // replicates that give the standard error
 
 /// Sixteen points of the four-dimensional unit cube.
 struct Cube16 {

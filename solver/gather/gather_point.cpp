@@ -19,11 +19,11 @@ namespace clerestory {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kWorthLooking =
-    0.1;  ///< share of the bright patches' light in those that are not in bright areas looked at
-constexpr double kLeastOfBest = 0.2;  ///< of the light of the best bright area, else it has no rays of its own
+// By judgement: they decide who finds which light, and bias nothing.
+constexpr double kWorthLooking = 0.1;  ///< share of bright patches' light outside of the bright areas looked at
+constexpr double kLeastOfBest = 0.2;   ///< of the light of the best bright area, else it has no rays of its own
 constexpr std::size_t kMostOpenings = 8, kMostBrightAreas = 4;  ///< that a point looks at by rays of their own
-/// Owners of rays: openings and, from kPanels on, bright areas, by number.
+/// Owners of rays: openings and, from kBrightAreas on, bright areas, by number.
 constexpr std::uint32_t kBrightAreas = 0x80000000, kNobody = kNoOpening;
 
 /// What comes back along rays from one point.

@@ -17,9 +17,13 @@ namespace clerestory {
 namespace {
 
 constexpr std::size_t kParts = 4;
-constexpr int kDirections = 16, kPairs = 16, kPoints = 8;
+constexpr int kDirections = 16, kPairs = 16,
+              kPoints = 8;        // of each part: one packet each, and half of one for luminaires
 constexpr int kMostHalvings = 4;  // of an element in one call
-constexpr double kSigmas = 3, kFewestPatches = 2000, kMostPatches = 10'000, kDark = 0.25;
+constexpr double kSigmas = 3;     // one probe in 400 takes its own noise for light, and halves an element in vain
+constexpr double kFewestPatches = 2000,
+                 kMostPatches = 10'000;  // by judgement: what one element may get wrong, see refine.h
+constexpr double kDark = 0.25;           // of the median E: darker ones count as if they had that
 
 /// Values of the same sample in each part, summed so that differences of parts and their errors follow.
 struct Paired {

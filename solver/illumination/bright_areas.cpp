@@ -11,11 +11,12 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kMostBrightAreas = 64;
-constexpr std::size_t kFewPlanes = 4;
-constexpr double kDark = 1e-3;  ///< of the brightest patch: does not count as light
-constexpr double kLeastFilled = 1.0 / 3;
-constexpr double kSameDirection = 1 - 1e-9;
+// By judgement, but for what a comment says was measured.
+constexpr std::size_t kMostBrightAreas = 64;  ///< every point asks each of them what it may give
+constexpr std::size_t kFewPlanes = 4;         ///< one glowing wall and what it lights best
+constexpr double kDark = 1e-3;                ///< of the brightest patch: does not count as light
+constexpr double kLeastFilled = 1.0 / 3;      ///< of the hull; emptier ones waste most of their rays
+constexpr double kSameDirection = 1 - 1e-9;   ///< cosine: rounding of normals of one plane
 
 struct Corner {
   std::uint32_t vertex, number;

@@ -22,10 +22,10 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kTile = 32;
+constexpr std::size_t kTile = 32;  // patches of a tile; by judgement
 /// Relative error of an unblocked row sum: quadrature of far pairs, mostly far below.
 constexpr double kQuadratureError = 3e-4;
-constexpr int kRaysForClosure = 128;
+constexpr int kRaysForClosure = 128;  // a patch: tells closed rows from those that lose 1 % or more
 /// Standard error of one factor above which its visibility is sampled again by more rays.
 constexpr double kPairError = 3e-5;
 /// Standard error of a row's sum above which all its doubtful pairs are sampled again, by kSecondSamples rays. Patches
@@ -33,7 +33,7 @@ constexpr double kPairError = 3e-5;
 /// which takes stratified samples for independent ones.
 constexpr double kRowError = 3e-4;
 constexpr int kSecondSamples = 256;
-constexpr int kMostSamples = 32'768;
+constexpr int kMostSamples = 32'768;  // of a pair: the standard error is a 200th of one sample's then
 
 /// Patches of a compact cluster stand together in `order`, so that a tile of pairs shares one shaft.
 void cluster(std::span<std::uint32_t> order, const std::vector<QuadratureTriangle>& triangles) {

@@ -31,7 +31,7 @@ constexpr double kStakeByTolerance = 1e-4;    // flux at stake of `bf`, as a sha
 constexpr double kMostRays = 1.5e7;
 /// Scenes of few elements cost next to nothing, and their energy would hang on few rays: they get more of them.
 constexpr std::size_t kFewLeaves = 1500;
-constexpr int kMostOfOne = 1024;
+constexpr int kMostOfOne = 1024;       // rays of one receiver; by judgement
 constexpr double kDarkestShare = 0.1;  // share of a space's area that is no brighter than its ground level
 
 /// Quality of one round: thresholds fall from round to round.

@@ -14,6 +14,7 @@
 namespace clerestory {
 namespace {
 
+// By judgement: bounds on work in models that are not buildings, and tolerances above the rounding of model files.
 constexpr double kSamePlane = 1e-4;         ///< sine of the angle between normals
 constexpr double kStraight = 1e-4;          ///< sine of the angle between edges that continue each other
 constexpr std::size_t kMostEdges = 20'000;  ///< rims that are tried, the longest

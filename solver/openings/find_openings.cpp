@@ -15,14 +15,16 @@
 namespace clerestory {
 namespace {
 
-constexpr int kFewRays = 16, kRays = 128;  ///< to a side, to sift and to judge
-constexpr double kSeesSky = 0.1;           ///< share of the rays out that meet sky
-constexpr double kIndoors = 0.2;           ///< most of the rays in that do
-constexpr double kWideOpen = 0.5;          ///< and those that do so mostly are preferred
-constexpr double kNew = 0.1;               ///< of the rays out, those that see sky which no other opening shows
-constexpr std::size_t kMostCorners = 256;
-constexpr std::size_t kMostCandidates = 5000;  ///< good ones, the best
-constexpr std::size_t kMostTriangles = 2'000'000, kMostOpenings = 500;
+// By judgement: what is taken for an opening or not biases nothing, it only says where to look.
+constexpr int kFewRays = 16, kRays = 128;          ///< to a side, to sift and to judge
+constexpr double kSeesSky = 0.1;                   ///< share of the rays out that meet sky
+constexpr double kIndoors = 0.2;                   ///< most of the rays in that do
+constexpr double kWideOpen = 0.5;                  ///< and those that do so mostly are preferred
+constexpr double kNew = 0.1;                       ///< of the rays out, those that see sky which no other opening shows
+constexpr std::size_t kMostCorners = 256;          ///< of an outline; a window has few
+constexpr std::size_t kMostCandidates = 5000;      ///< good ones, the best
+constexpr std::size_t kMostTriangles = 2'000'000;  ///< of a model that is searched, for the time it takes
+constexpr std::size_t kMostOpenings = 500;         ///< every point asks each of them what it may give
 
 struct SkySeen {
   double share = 0, radiance = 0;  ///< of the rays that escape through air or glass; mean of what they see

@@ -19,8 +19,8 @@ namespace clerestory {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 14;  ///< patches between two looks at what is known by then
-constexpr std::size_t kLuminaireSamples =
-    64;  ///< points from which a patch looks for lamps, and shadow rays to emitters
+/// Points from which a patch looks for luminaires, and shadow rays to bright patches.
+constexpr std::size_t kLuminaireSamples = 64;
 
 /// Patches that see each other, and what is known of each such space.
 class Spaces {

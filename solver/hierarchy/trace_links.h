@@ -38,7 +38,7 @@ struct LinkOptions {
 /// tenth of that: what is hidden of a node is darker than what is seen, and without the second condition a row loses 2
 /// %.
 ///
-/// light  made with what the explicit sources send more than their surroundings; its problem is that of the leaves.
+/// light  made with what the bright sources send more than their surroundings; its problem is that of the leaves.
 /// B      N x channels, radiosity known so far, or what it is above a level; empty: nothing is merged.
 /// direct light that the links do not bring; sky through the openings it has looked at is not looked for again.
 /// Cost   R + L rays for each receiver; 8 bytes a link.

@@ -139,7 +139,7 @@ def classroom():
     show(opened("classroom.vtp"), view, "illuminance")
     look(view, [8.75, 6.6, 1.75], [2.6, 2.4, 1.05], 66)
     table = colours("illuminance", 0, 700)
-    legend(view, table, "lux", [0, 100, 200, 300, 400, 500, 600, 700], [0.90, 0.50])
+    legend(view, table, "lux", [0, 100, 200, 300, 400, 500, 600, 700], [0.90, 0.47])
     save("luminaires", view)
 
 

@@ -1,4 +1,4 @@
-// The #include lines against DESIGN.md, section 2: who may include whom, and one door for each library.
+// The #include lines: who may include whom, and one door for each library.
 
 #include <algorithm>
 #include <filesystem>

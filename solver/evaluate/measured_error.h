@@ -12,7 +12,7 @@
 
 namespace clerestory {
 
-/// Relative to the mean of the reference, see DESIGN: sqrt(mean((x - r)^2)) / mean(r), reference noise taken out.
+/// Relative to the mean of the reference: sqrt(mean((x - r)^2)) / mean(r), reference noise taken out.
 struct MeasuredError {
   double rms_relative = 0;
   double p95_relative = 0;

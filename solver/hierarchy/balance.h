@@ -15,7 +15,7 @@ namespace clerestory {
 /// each one an ambient irradiance e of each space and channel, B += e albedo, makes the area-weighted residual of the
 /// space vanish, as in FullMatrixSystem: a few tens of sweeps at reflectance 0.9999 as at 0.5.
 ///
-/// E_direct  N x channels: small lights and transport.E_sky.
+/// E_direct  N x channels: delta light and transport.E_sky.
 /// B         N x channels: first guess; empty: M + rho E_direct.
 /// returns   E, B, residual, iterations, stop, log; of the balance what is absorbed and escapes once it has arrived.
 /// Cost      V + links a sweep.

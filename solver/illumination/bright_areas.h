@@ -13,18 +13,18 @@ std::vector<std::vector<std::uint32_t>> plane_groups(const PatchSet& patches, co
 
 struct BrightAreas {
   std::vector<LightArea> shape;  ///< hull of each bright area's patches; the normal is theirs, brightness their mean
-  std::vector<double> flux;      ///< that explicit patches of each send [W]
+  std::vector<double> flux;      ///< that bright patches of each send [W]
   std::vector<std::uint32_t> of_patch;  ///< N, bright area or kNone; empty without any
   double ambient = 0;                   ///< mean radiosity of all other patches [W/m2]
-  double all_flux = 0;                  ///< of all explicit patches, in bright areas or not
+  double all_flux = 0;                  ///< of all bright patches, in bright areas or not
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   std::uint32_t of(PatchId p) const { return of_patch.empty() ? kNone : of_patch[p]; }
 };
 
-/// The bright areas that send most, up to 64: explicit patches of `lamps` that share corners and a plane, where they
+/// The bright areas that send most, up to 64: bright patches of `luminaires` that share corners and a plane, where they
 /// fill at least a third of their hull. Where all light leaves no more than four planes, these, however bright:
-/// explicit patches are told by the median, which fails where most of all area is bright.
+/// bright patches are told by the median, which fails where most of all area is bright.
 BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& luminaires);
 
 }  // namespace clerestory

@@ -39,7 +39,7 @@ class LightSampler {
   LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool bright_patches_only) const;
 
   /// Density per solid angle with which sample() would choose, at p with normal n, the direction that ends on the
-  /// explicit patch q at `distance`, `cos_q` being the cosine there.
+  /// bright patch q at `distance`, `cos_q` being the cosine there.
   double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
                  bool bright_patches_only) const;
 

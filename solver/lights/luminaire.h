@@ -2,7 +2,7 @@
 // What luminaires of any kind give at a point.
 //
 // A kind is a file here, NAME_luminaire.h, with four functions: intensity, power, bounds, turn_into_image; kinds whose
-// light comes out of an opening have six more (web_luminaire.h). Data: solver/model/light_spec.h.
+// light comes out of an opening have five more (web_luminaire.h). Data: solver/model/light_spec.h.
 
 #include "solver/lights/light_tree.h"
 #include "solver/lights/luminaire_opening.h"

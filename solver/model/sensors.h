@@ -31,7 +31,7 @@ struct SensorSet {
   std::optional<double> threshold{};  ///< illuminance that points should have [lx]
 };
 
-/// Planes around the axis of a cylindrical sensor, see solver/sensor_planes.h.
+/// Planes around the axis of a cylindrical sensor, see solver/evaluate/sensor_planes.h.
 inline constexpr std::size_t kCylinderPlanes = 21;
 
 /// How many planes a sensor of this kind takes.

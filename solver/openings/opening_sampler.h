@@ -22,7 +22,7 @@ class OpeningSampler {
     double preference = 0;      ///< part of preference(direction) that is due to the opening chosen [1/sr]
     std::uint32_t opening = 0;  ///< the one chosen
   };
-  /// LightArea chosen by `pick` in [0, 1), and the direction (u, v) through it, for receiver point p with normal n.
+  /// Opening chosen by `pick` in [0, 1), and the direction (u, v) through it, for receiver point p with normal n.
   Sample sample(const Vec3& p, const Vec3& n, double pick, double u, double v) const;
 
   /// Close to the density of sample() in direction d, all openings that it passes together, but one [1/sr]: what to

@@ -66,7 +66,7 @@ class GatherPattern {
   const GatherQuality& quality() const { return quality_; }
   const Strata& bundle() const { return bundle_; }
   const AreaCells& area_cells() const { return area_cells_; }
-  /// Which light, and where on it, for each lamp ray.
+  /// Which bright patch, and where on it, for each ray at them.
   const std::vector<std::array<double, 3>>& bright_choices() const { return bright_choices_; }
   /// The same for pilot rays.
   static constexpr std::uint32_t kBrightPilots = 64;

@@ -420,7 +420,7 @@ TEST_F(SceneFile, MissingMembersAreNamed) {
   EXPECT_EQ(refusal_with(R"("luminaires": [ { "type": "point", "luminous_flux": 1 } ])"),
             "s.json: luminaires[0].position is missing");
   EXPECT_EQ(refusal_with(R"("luminaires": [ { "type": "point", "position": [0, 0, 0] } ])"),
-            "s.json: luminaires[0].luminous_flux is missing; a lamp needs its flux in lumens");
+            "s.json: luminaires[0].luminous_flux is missing; a luminaire needs its flux in lumens");
   EXPECT_EQ(refusal(folder_.write("s.json", R"({ "geometry": [ { "file": "hall.obj" } ] })")),
             "s.json: geometry[0].file 'hall.obj': there is no file " + folder_ / "hall.obj" +
                 "; paths are relative to the scene file");

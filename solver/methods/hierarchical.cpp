@@ -134,7 +134,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   const std::size_t n = leaves.patch_count();
 
   if (options.oracle == Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
-  quality.direct.rough_first = false;  // a round that is stopped is not shown
+  quality.direct.rough_first = false;  // a round that is stopped is not returned
   DirectLight direct = direct_light(Illumination(problem), quality.direct, monitor);
   if (monitor.should_stop()) return round;
   Field guess, glow;
@@ -219,7 +219,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
                                   const Monitor& monitor) {
   HierarchicalSolution early;
   const bool hurry = monitor.deadline != Monitor{}.deadline;
-  std::vector<std::uint32_t> shown = mesh.leaves();  // the elements of what is returned
+  std::vector<std::uint32_t> returned = mesh.leaves();  // the elements of what is returned
   if (hurry) early = early_picture(problem, mesh, options, false, monitor);
 
   std::unique_ptr<Round> last;
@@ -264,7 +264,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   HierarchicalSolution out;
   if (last) {
     out = std::move(last->result);
-    shown = std::move(last->element);
+    returned = std::move(last->element);
   } else {
     out = hurry ? std::move(early) : early_picture(problem, mesh, options, true, {});
     if (!hurry) log.push_back(out.solution.log.back());
@@ -274,9 +274,9 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     if (!log.empty()) out.solution.stopped_at = log.back();
     log.push_back("stopped early");
   }
-  if (shown.size() != mesh.leaf_count()) {  // stopped after more were halved
+  if (returned.size() != mesh.leaf_count()) {  // stopped after more were halved
     for (Field* f : {&out.delta_light, &out.solution.E, &out.solution.B})
-      if (!f->value.empty()) *f = inherited(*f, shown, mesh);
+      if (!f->value.empty()) *f = inherited(*f, returned, mesh);
     out.elements = mesh.leaf_patches();
   }
   out.solution.log = std::move(log);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what building and testing Clerestory needs, from the packages of Debian 12 (or a later relative), and the
-# packages that are named as arguments.
+# Installs what building Clerestory needs, from the packages of Debian 12 (or a later relative), and the packages that are
+# named as arguments: libgtest-dev for the tests.
 # Packages that are there already are left alone; with all of them there, neither root nor a network is needed.
 set -euo pipefail
 
@@ -12,7 +12,6 @@ packages=(
   libvtk9-dev                             # results out
   libopenimageio-dev                      # sky images in
   libcli11-dev                            # the command line
-  libgtest-dev                            # tests
   "$@"
 )
 

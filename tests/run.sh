@@ -18,7 +18,7 @@ for argument in "$@"; do
   esac
 done
 
-bash apps/install_dependencies.sh
+bash apps/install_dependencies.sh libgtest-dev
 cmake --preset release -DCLERESTORY_BUILD_TESTS=ON
 cmake --build --preset release
 ctest --preset release --parallel "$(nproc)" --no-label-summary "${to_ctest[@]}"

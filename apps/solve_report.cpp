@@ -28,22 +28,17 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
   if (scene.lights.sky && s.openings == 0) out.push_back("openings: the sky looks into no room");
   if (scene.lights.luminaires.empty()) out.push_back("luminaires: the scene has none");
-  for (std::size_t kind = 1; kind < std::size(kMaterialKindNames); ++kind)
+  constexpr const char* kPlural[] = {"", "glass", "diffusers", "mirrors"};  // in the order of MaterialKind
+  static_assert(std::size(kPlural) == std::size(kMaterialKindNames));
+  for (std::size_t kind = 1; kind < std::size(kPlural); ++kind)
     if (std::ranges::none_of(s.patches.materials,
                              [&](const Material& m) { return static_cast<std::size_t>(m.kind) == kind; }))
-      out.push_back(std::string(kMaterialKindNames[kind]) + ": the scene has none");
+      out.push_back(kPlural[kind] + std::string(": the scene has none"));
   if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
   if (s.lit_sides.luminaire_interiors)
     out.push_back(counted(s.lit_sides.luminaire_interiors, "emitting side") +
                   " that shine on nothing but their own luminaire");
   return out;
-}
-
-std::string error_line(const MeasuredError& e) {
-  const std::string where = ", measured at " + counted(e.samples, "point");
-  if (e.rms_relative < e.confidence) return "below " + percent(e.rms_relative + e.confidence) + " rms" + where;
-  return percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), 95 % of points within " +
-         percent(e.p95_relative) + where;
 }
 
 /// Characters of UTF-8.
@@ -68,6 +63,13 @@ std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
 }
 
 }  // namespace
+
+std::string error_line(const MeasuredError& e) {
+  const std::string where = ", measured at " + counted(e.samples, "point");
+  if (e.rms_relative < e.confidence) return "below " + percent(e.rms_relative + e.confidence) + " rms" + where;
+  return percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), 95 % of points within " +
+         percent(e.p95_relative) + where;
+}
 
 std::optional<double> daylight_reference(const LightSpec& lights) {
   if (!lights.sky || !lights.suns.empty()) return {};
@@ -94,10 +96,10 @@ std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights) {
     ++rows[at->second].count;
     rows[at->second].luminous_flux += photometric(power);
   };
-  constexpr const char* kTypes[] = {"point", "spot", "file"};  // in the order of Luminaire::kind
   for (const Luminaire& luminaire : lights.luminaires) {
     const auto* file = std::get_if<WebLuminaire>(&luminaire.kind);
-    add(kTypes[luminaire.kind.index()], file ? file->web.get() : nullptr, luminaire.group, power(luminaire));
+    add(kLuminaireKindNames[luminaire.kind.index()].data(), file ? file->web.get() : nullptr, luminaire.group,
+        power(luminaire));
   }
   return rows;
 }

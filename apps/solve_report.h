@@ -20,6 +20,9 @@ std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights);
 /// A table of the sets, one line each below its header; [lx].
 std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors);
 
+/// "1.2 % rms (+- 0.1 %), 95 % of points within 3 %, measured at 257 points"
+std::string error_line(const MeasuredError& error);
+
 /// Elements, time, energy balance, measured error and the sensors of each set, as lines on standard output.
 void say_summary(const RunReport& report, const Solved& solved, Console& console);
 

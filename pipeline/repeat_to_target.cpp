@@ -50,14 +50,10 @@ class StageTimes {
   std::vector<Stage> stages_;
 };
 
-void add(StageSeconds& sum, const StageSeconds& s) {
-  sum.mesh += s.mesh, sum.build += s.build, sum.gather += s.gather;
-  sum.reconstruct += s.reconstruct, sum.measure += s.measure;
-}
-
 Clock::time_point deadline(const Settings& s) {
   if (!s.time_limit) return Clock::time_point::max();
-  return s.start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*s.time_limit));
+  return s.start.value_or(Clock::now()) +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*s.time_limit));
 }
 
 bool is_better(const Solved& a, const Solved& b) {
@@ -83,10 +79,8 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
   StageSeconds seconds;
   Settings settings = asked;
   const auto attempt = [&] {
-    std::optional<Solved> solved = round(settings, monitor);
-    if (!solved) return solved;
-    solved->settings = settings;
-    add(seconds, solved->seconds);
+    std::optional<Solved> solved = round(settings, monitor, seconds);
+    if (solved) solved->settings = settings;
     return solved;
   };
   Solved best;
@@ -97,7 +91,7 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
     best.settings = settings;
   }
   Settings finer = settings;
-  for (int k = 1; k < kMostTightened && !best.empty() && !meets_target(best) && !monitor.should_stop(); ++k) {
+  for (int k = 1; k < kMostRounds && !best.empty() && !meets_target(best) && !monitor.should_stop(); ++k) {
     finer.max_element = finer.max_element.value_or(best.repairs.max_element) * kTighterEdge;
     ++finer.solve.tighten;
     observer.note("error " + percent(best.error ? best.error->rms_relative : 1) + ", asked for " +

@@ -4,18 +4,21 @@
 #include <span>
 
 #include "io/scene_file/nearest_name.h"
+#include "solver/model/error.h"
 
 namespace clerestory {
 namespace {
 
 std::string problem_with(const std::string& name, std::span<const std::string_view> names, const std::string& what) {
   if (std::find(names.begin(), names.end(), name) != names.end()) return {};
-  return what + " '" + name + "' is not known; " + suggestion(name, names) + ".";
+  const std::string near = suggestion(name, names);
+  return what + " '" + name + "' is not known; " + near + (near.ends_with('?') ? "" : ".");
 }
 
 /// Enumerators and names are in the same order.
 template <class Enum>
-Enum named(const std::string& name, std::span<const std::string_view> names) {
+Enum named(const std::string& name, std::span<const std::string_view> names, const std::string& what) {
+  if (const std::string problem = problem_with(name, names, what); !problem.empty()) throw InputError(problem);
   return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
@@ -24,10 +27,10 @@ Enum named(const std::string& name, std::span<const std::string_view> names) {
 std::string problem_with_method(const std::string& name) { return problem_with(name, kMethodNames, "method"); }
 std::string problem_with_accuracy(const std::string& name) { return problem_with(name, kAccuracyNames, "accuracy"); }
 std::string problem_with_oracle(const std::string& name) { return problem_with(name, kOracleNames, "oracle"); }
-Method method_named(const std::string& name) { return named<Method>(name, kMethodNames); }
-Accuracy accuracy_named(const std::string& name) { return named<Accuracy>(name, kAccuracyNames); }
+Method method_named(const std::string& name) { return named<Method>(name, kMethodNames, "method"); }
+Accuracy accuracy_named(const std::string& name) { return named<Accuracy>(name, kAccuracyNames, "accuracy"); }
 
-Oracle oracle_named(const std::string& name) { return named<Oracle>(name, kOracleNames); }
+Oracle oracle_named(const std::string& name) { return named<Oracle>(name, kOracleNames, "oracle"); }
 
 Settings settings_of(const Scene& scene) {
   const SolverSettings& file = scene.settings;

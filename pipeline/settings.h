@@ -12,15 +12,15 @@ namespace clerestory {
 
 struct Settings {
   SolveOptions solve;
-  std::optional<int> channels;              ///< 1 or 3; empty: what the scene needs
-  std::optional<double> max_element;        ///< longest edge [m]; empty: by accuracy and size
-  std::optional<double> target_error;       ///< RMS relative [1]
-  std::optional<double> time_limit;         ///< [s]
-  std::optional<std::size_t> memory_limit;  ///< of the whole process [bytes]
-  bool debug = false;                       ///< show what the hierarchical method did
+  std::optional<int> channels{};              ///< 1 or 3; empty: what the scene needs
+  std::optional<double> max_element{};        ///< longest edge [m]; empty: by accuracy and size
+  std::optional<double> target_error{};       ///< RMS relative [1]
+  std::optional<double> time_limit{};         ///< [s]
+  std::optional<std::size_t> memory_limit{};  ///< of the whole process [bytes]
+  bool debug = false;                         ///< show what the hierarchical method did
 
-  /// The time limit counts from here, so that reading the scene may be part of it.
-  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  /// The time limit counts from here, so that reading the scene may be part of it; empty: from solve_scene() on.
+  std::optional<std::chrono::steady_clock::time_point> start{};
 };
 
 /// The defaults, with what the scene's file says.
@@ -30,7 +30,7 @@ Settings settings_of(const Scene& scene);
 std::string problem_with_method(const std::string& name);
 std::string problem_with_accuracy(const std::string& name);
 std::string problem_with_oracle(const std::string& name);
-/// By a known name.
+/// throws  InputError for a name that is not known.
 Method method_named(const std::string& name);
 Accuracy accuracy_named(const std::string& name);
 Oracle oracle_named(const std::string& name);

@@ -5,6 +5,7 @@
 #include "pipeline/lap.h"
 #include "pipeline/prepare.h"
 #include "pipeline/repeat_to_target.h"
+#include "pipeline/require_valid.h"
 #include "pipeline/scene_checks.h"
 
 #include "solver/evaluate/sensor_planes.h"
@@ -20,53 +21,57 @@ std::optional<MeasuredError> if_measured(const MeasuredError& error) {
 }  // namespace
 
 Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer) {
+  require_valid(scene, asked);
   warn_about_scene(scene, observer);
   require_light(scene);
   const SensorPlanes sensors = planes_of(scene.sensors);
 
-  return repeat_to_target(asked, observer, [&](Settings& settings, const Monitor& monitor) -> std::optional<Solved> {
-    // Scene -> patches, rays, lights, sides that light can reach, points to show it on.
-    Solved out;
-    std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, monitor, out.seconds);
-    if (!prepared) return {};
-    auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
-    const Problem problem = prepared->scene.problem();
-    warn_about_places(problem, scene, sensors, observer);
+  bool first = true;
+  return repeat_to_target(
+      asked, observer, [&](Settings& settings, const Monitor& monitor, StageSeconds& seconds) -> std::optional<Solved> {
+        // Scene -> patches, rays, lights, sides that light can reach, points to show it on.
+        Solved out;
+        std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, monitor, seconds);
+        if (!prepared) return {};
+        auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
+        const Problem problem = prepared->scene.problem();
+        if (std::exchange(first, false)) warn_about_places(problem, scene, sensors, observer);
 
-    // -> radiosity of elements, irradiance at vertices.
-    Lap lap;
-    const SolveOptions& options = settings.solve;
-    SolvedPatches solved = solve(problem, std::move(prepared->lightmap), repairs.max_element, options, monitor,
-                                 settings.debug ? &out.debug : nullptr);
-    Solution& solution = solved.solution;
-    if (solved.elements.patch_count() > 0) patches = std::move(solved.elements);  // the problem is about these now
-    lap.add_to(out.seconds.gather);
+        // -> radiosity of elements, irradiance at vertices.
+        Lap lap;
+        const SolveOptions& options = settings.solve;
+        SolvedPatches solved = solve(problem, std::move(prepared->lightmap), repairs.max_element, options, monitor,
+                                     settings.debug ? &out.debug : nullptr);
+        Solution& solution = solved.solution;
+        if (solved.elements.patch_count() > 0) patches = std::move(solved.elements);  // the problem is about these now
+        lap.add_to(seconds.gather);
 
-    // -> irradiance at sensors.
-    const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, monitor);
-    out.sensor_E = mean_over_planes(sensors, at_planes.E);
-    solution.rays += at_planes.rays;
-    if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
-    lap.add_to(out.seconds.reconstruct);
+        // -> irradiance at sensors.
+        const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, monitor);
+        out.sensor_E = mean_over_planes(sensors, at_planes.E);
+        solution.rays += at_planes.rays;
+        if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
+        lap.add_to(seconds.reconstruct);
 
-    // -> how wrong both are.
-    const ErrorEffort effort = clerestory::effort(options.accuracy, options.tighten).error;
-    if (!monitor.should_stop())
-      out.error = if_measured(measure_error(problem, solved.lightmap, effort, solution.rays, options.seed, monitor));
-    if (!monitor.should_stop() && !sensors.planes.empty())
-      out.error_sensors = if_measured(
-          measure_sensor_error(problem, sensors.planes, at_planes.E, effort, solution.rays, options.seed, monitor));
-    if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
-    lap.add_to(out.seconds.measure);
+        // -> how wrong both are.
+        const ErrorEffort effort = clerestory::effort(options.accuracy, options.tighten).error;
+        if (!monitor.should_stop())
+          out.error =
+              if_measured(measure_error(problem, solved.lightmap, effort, solution.rays, options.seed, monitor));
+        if (!monitor.should_stop() && !sensors.planes.empty())
+          out.error_sensors = if_measured(
+              measure_sensor_error(problem, sensors.planes, at_planes.E, effort, solution.rays, options.seed, monitor));
+        if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
+        lap.add_to(seconds.measure);
 
-    out.openings = lights.openings.size();
-    out.patches = std::move(patches);
-    out.lightmap = std::move(solved.lightmap);
-    out.solution = std::move(solution);
-    out.repairs = repairs;
-    out.lit_sides = std::move(lit_sides);
-    return out;
-  });
+        out.openings = lights.openings.size();
+        out.patches = std::move(patches);
+        out.lightmap = std::move(solved.lightmap);
+        out.solution = std::move(solution);
+        out.repairs = repairs;
+        out.lit_sides = std::move(lit_sides);
+        return out;
+      });
 }
 
 Solved solve_scene(const Scene& scene, const Settings& settings) {

@@ -71,10 +71,10 @@ std::string describe(SkyModel model) {
 void say_lights(const Scene& scene, Console& console) {
   const LightSpec& l = scene.lights;
   for (const Luminaire& luminaire : l.luminaires) {
-    constexpr const char* kTypes[] = {"point luminaire", "spot", "luminaire"};  // in the order of Luminaire::kind
     const auto* file = std::get_if<WebLuminaire>(&luminaire.kind);
-    console.say("  light    " + std::string(kTypes[luminaire.kind.index()]) + " '" + luminaire.name + "'" +
-                (file ? " of " + file->web->name : "") + ", " + rounded(photometric(power(luminaire))) + " lm");
+    console.say("  light    " + (file ? "" : std::string(kLuminaireKindNames[luminaire.kind.index()]) + " ") +
+                "luminaire '" + luminaire.name + "'" + (file ? " of " + file->web->name : "") + ", " +
+                rounded(photometric(power(luminaire))) + " lm");
   }
   if (l.sky)
     console.say("  light    " + describe(l.sky->model) + " sky, " + rounded(photometric(l.sky->horizontal_irradiance)) +
@@ -99,7 +99,10 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   report.seconds.read = console.elapsed();
 
   const auto prepared = prepare(scene, settings, console.monitor(), &report.seconds);
-  if (!prepared) return kInterrupted;
+  if (!prepared) {
+    console.warn("interrupted before the mesh was complete; nothing more is known.");
+    return kInterrupted;
+  }
   const auto& [patches, repairs, rays, lights, lit_sides] = *prepared;
   const SensorPlanes sensors = planes_of(scene.sensors);
   warn_about_places(prepared->problem(), scene, sensors, console);

@@ -50,7 +50,7 @@ void say_why(ExitCode code, const Solved& solved, Console& console) {
                  "; the result so far is written.");
   else
     console.warn("the target error of " + percent(*settings.target_error) + " was not reached" +
-                 (solved.error ? ", only " + percent(solved.error->rms_relative) : "") + "; the result is written.");
+                 (solved.error ? ": it is " + error_line(*solved.error) : "") + "; the result is written.");
 }
 
 /// All that can be refused is refused before the long computation.
@@ -81,6 +81,11 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   settings.start = console.start();
   if (settings.debug && settings.solve.method != Method::hierarchical) {
     console.fail("--debug-output shows the hierarchical method only, and the method is " +
+                 std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
+    return kWrongUsage;
+  }
+  if (settings.solve.oracle == Oracle::bf && settings.solve.method != Method::hierarchical) {
+    console.fail("--oracle bf is of the hierarchical method only, and the method is " +
                  std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
     return kWrongUsage;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "solver/gather/gather.h"
 #include "solver/model/parallel.h"
@@ -30,6 +31,7 @@ MeasuredError summarise(std::span<const Comparison> samples) {
   const double n = static_cast<double>(samples.size());
   double mean = 0, squares = 0, variance_of_references = 0;
   for (const Comparison& s : samples) mean += s.r / n;
+  if (!std::isfinite(mean)) throw std::logic_error("a reference of the measured error is no number");
   if (!(mean > 0)) return error;
   std::vector<double> relative;
   for (const Comparison& s : samples) {

@@ -81,7 +81,7 @@ double skew_remainder(const SkewLines& lines) {
   const double end = std::asinh(lines.s1 * lines.sin / lines.d);
   double begin = std::asinh(lines.s0 * lines.sin / lines.d);
   double sum = 0;
-  // BrightAreas from left to right, as wide as the singularities allow.
+  // Panels from left to right, as wide as the singularities allow.
   while (begin < end) {
     double width = end - begin;
     while (width > distance(begin, begin + width)) width *= 0.5;

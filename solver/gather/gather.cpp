@@ -70,7 +70,7 @@ std::vector<std::size_t> buried_points(const Problem& problem, std::span<const S
     const ReceivingPoint at = point_of(i);
     const Frame frame(at.n);
     for (std::uint32_t k = 0; k < kRays; ++k) {
-      const auto u = sobol4(k, stream_key(kBuriedPoints, i));
+      const auto u = sobol4(k, stream_key(0, kBuriedPoints, i));
       const Hit hit = problem.rays.first_hit(problem.patches, {at.p, cosine_direction(frame, u[0], u[1])});
       dark += !hit.escaped() && !hit.patch.valid();
     }

@@ -12,7 +12,7 @@ namespace clerestory {
 /// Irradiance [W/m2] at a point.
 struct GatheredLight {
   Spectrum E;            ///< from everything
-  Spectrum delta_light;  ///< from luminaires without extent and suns; part of E
+  Spectrum delta_light;  ///< from luminaires and suns, by shadow rays only; part of E
   double std_error =
       0;  ///< standard error of E from the bundle, luminous mean, by the differences of neighbouring rays
 };

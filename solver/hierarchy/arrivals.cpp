@@ -83,11 +83,11 @@ class Collector {
   }
 
   void take_patch(const Ray& ray, const Hit& hit, const Vec3& normal, std::span<const double> share, BundleSums& sums) {
-    const LightSampler& luminaires = around_.light.sampler;
+    const LightSampler& sampler = around_.light.sampler;
     const double passes = luminous_mean(hit.transmittance);
-    if (L_ > 0 && !hit.reflected && luminaires.is_bright(hit.patch)) {
+    if (L_ > 0 && !hit.reflected && sampler.is_bright(hit.patch)) {
       const double c = dot(normal, ray.direction) / std::numbers::pi;
-      const double density = luminaires.density(hit, ray.origin, normal, ray.direction, true);
+      const double density = sampler.density(hit, ray.origin, normal, ray.direction, true);
       out_.bright.hits += 1.0 / R_;
       add(hit.patch, c * power_heuristic_over_density(R_ * c, L_ * density), passes, true, ray.direction);
     } else {

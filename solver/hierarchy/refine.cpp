@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kParts = 4;
 constexpr int kDirections = 16, kPairs = 16,
-              kPoints = 8;        // of each part: one packet each, and half of one for luminaires
+              kPoints = 8;        // of each part: one packet each, and half of one for delta light
 constexpr int kMostHalvings = 4;  // of an element in one call
 constexpr double kSigmas = 3;     // one probe in 400 takes its own noise for light, and halves an element in vain
 constexpr double kFewestPatches = 2000,
@@ -82,7 +82,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
   }
   rays += kDirections * kParts;
 
-  Paired luminaires;
+  Paired bright;
   if (pairs > 0) {
     std::array<std::array<double, kParts>, kPairs> found{};
     const std::uint64_t pick = mix_bits(key), place = mix_bits(pick);
@@ -105,11 +105,11 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
         if (sent > 0) shadows.send(from, sample.end, {&found[k][s], sent});
       }
     shadows.trace();
-    for (const auto& x : found) luminaires.add(x);
+    for (const auto& x : found) bright.add(x);
     rays += kPairs * kParts;
   }
 
-  Paired small;
+  Paired delta;
   if (!problem.lights.empty()) {
     const std::uint64_t place = mix_bits(key + 1);
     for (int k = 0; k < kPoints; ++k) {
@@ -117,7 +117,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       for (std::size_t s = 0; s < kParts; ++s)
         value[s] = luminous_mean(light.sampler.delta_light(point_on_triangle(parts[s], v[0], v[1]) + lift, normal, 1,
                                                            mix_bits(place + static_cast<std::uint64_t>(k))));
-      small.add(value);
+      delta.add(value);
     }
     rays += kPoints * kParts;
   }
@@ -125,13 +125,13 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
   Variation result;
   std::array<double, kParts> E{};
   for (std::size_t s = 0; s < kParts; ++s)
-    for (const Paired* p : {&bundle, &luminaires, &small})
+    for (const Paired* p : {&bundle, &bright, &delta})
       if (p->count > 0) E[s] += p->mean(s);
   for (std::size_t s = 0; s < kParts; ++s) {
     result.E += E[s] / kParts;
     for (std::size_t t = s + 1; t < kParts; ++t) {
       double variance = 0;
-      for (const Paired* p : {&bundle, &luminaires, &small})
+      for (const Paired* p : {&bundle, &bright, &delta})
         if (p->count > 0) variance += p->variance(s, t);
       result.difference = std::max(result.difference, std::abs(E[s] - E[t]) - kSigmas * std::sqrt(variance));
     }

@@ -21,7 +21,7 @@ struct FieldOptions {
 /// P x channels, by point of the mesh [W/m2].
 struct VertexField {
   Field E;
-  Field delta_light;              ///< part of E: from luminaires without extent and suns
+  Field delta_light;              ///< part of E: from luminaires and suns, by shadow rays only
   std::vector<double> std_error;  ///< P, standard error of E, luminous mean
   unsigned long long rays = 0;
   std::vector<bool> known;  ///< P, false: not gathered, E holds nothing

@@ -109,14 +109,14 @@ std::vector<std::vector<std::uint32_t>> plane_groups(const PatchSet& patches, co
   return groups;
 }
 
-BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& luminaires) {
-  const Field& glow = luminaires.glow();
+BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& sampler) {
+  const Field& glow = sampler.glow();
   std::vector<std::uint32_t> bright, glowing;
   double brightest = 0;
   BrightAreas bright_areas;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i) {
     brightest = std::max(brightest, luminous_mean(glow[i]));
-    if (!luminaires.is_bright(PatchId{std::size_t{i}})) continue;
+    if (!sampler.is_bright(PatchId{std::size_t{i}})) continue;
     bright.push_back(i);
     bright_areas.all_flux += patches.area[i] * luminous_mean(glow[i]);
   }
@@ -136,18 +136,18 @@ BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& lumin
     LightArea shape = area_of(patches, groups[g], glow);
     if (!(shape.brightness > 0)) continue;
     if (bright_areas.of_patch.empty()) bright_areas.of_patch.assign(patches.patch_count(), BrightAreas::kNone);
-    double of_explicit = 0;
+    double of_bright = 0;
     for (const std::uint32_t p : groups[g]) {
       bright_areas.of_patch[p] = static_cast<std::uint32_t>(bright_areas.shape.size());
-      if (luminaires.is_bright(PatchId{std::size_t{p}})) of_explicit += patches.area[p] * luminous_mean(glow[p]);
+      if (sampler.is_bright(PatchId{std::size_t{p}})) of_bright += patches.area[p] * luminous_mean(glow[p]);
     }
-    bright_areas.flux.push_back(of_explicit);
+    bright_areas.flux.push_back(of_bright);
     bright_areas.shape.push_back(std::move(shape));
   }
   double dim_area = 0;
   for (std::uint32_t i = 0; i < patches.patch_count(); ++i) {
     const PatchId p{std::size_t{i}};
-    if (luminaires.is_bright(p) || bright_areas.of(p) != BrightAreas::kNone) continue;
+    if (sampler.is_bright(p) || bright_areas.of(p) != BrightAreas::kNone) continue;
     bright_areas.ambient += patches.area[i] * luminous_mean(glow[i]);
     dim_area += patches.area[i];
   }

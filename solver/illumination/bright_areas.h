@@ -22,9 +22,9 @@ struct BrightAreas {
   std::uint32_t of(PatchId p) const { return of_patch.empty() ? kNone : of_patch[p]; }
 };
 
-/// The bright areas that send most, up to 64: bright patches of `luminaires` that share corners and a plane, where they
+/// The bright areas that send most, up to 64: bright patches of `sampler` that share corners and a plane, where they
 /// fill at least a third of their hull. Where all light leaves no more than four planes, these, however bright:
 /// bright patches are told by the median, which fails where most of all area is bright.
-BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& luminaires);
+BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& sampler);
 
 }  // namespace clerestory

@@ -38,13 +38,13 @@ class PatchSampler {
 
   const Vec3& normal() const { return normal_; }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
-  /// Whether any of the lamp may be in front of any of the patch.
+  /// Whether any of the luminaire may be in front of any of the patch.
   bool faces(const Luminaire& luminaire) const {
     return std::any_of(corners_.begin(), corners_.end(),
                        [&](const Vec3& c) { return dot(normal_, luminaire.position - c) > -reach(luminaire); });
   }
 
-  /// What the lamp can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
+  /// What the luminaire can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
   double estimate(const Luminaire& luminaire) const {
     if (!faces(luminaire)) return 0;
     const Vec3 middle = centre();
@@ -53,7 +53,8 @@ class PatchSampler {
       sum += luminous_mean(open_irradiance(luminaire, p, normal_));
       size2 = std::max(size2, dot(p - middle, p - middle));
     }
-    // A beam may miss the four points; and a lamp in the middle of the patch is not as bright as it seems from there.
+    // A beam may miss the four points; and a luminaire in the middle of the patch is not as bright as it seems from
+    // there.
     const Vec3 d = luminaire.position - middle;
     const double all_round = luminous_mean(power(luminaire)) / (4 * std::numbers::pi * (dot(d, d) + size2));
     return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
@@ -134,9 +135,9 @@ Spectrum from_luminaire(const PatchSampler& patch, const PlacedLuminaire& lumina
 }
 
 /// The luminaires over one patch. Those that give much of its light are looked at one by one; the others, however many,
-/// share the rays of one, each ray to a lamp chosen in proportion to what it can give.
+/// share the rays of one, each ray to a luminaire chosen in proportion to what it can give.
 Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
-  constexpr std::size_t kFew = 4;    // lamps that need no choice
+  constexpr std::size_t kFew = 4;    // luminaires that need no choice
   constexpr double kMuch = 1.0 / 6;  // of what all can give
   Spectrum E(0.0);
   if (lights.luminaires.size() <= kFew) {
@@ -145,7 +146,7 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
   }
   struct Over {
     std::uint32_t number;
-    double gives;  ///< estimate without blockers, > 0 where the lamp can give anything [W/m2]
+    double gives;  ///< estimate without blockers, > 0 where the luminaire can give anything [W/m2]
     bool wide;     ///< from all over an opening
   };
   thread_local std::vector<Over> over;
@@ -158,7 +159,7 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
     all += gives;
   }
   bool wide = false;
-  double shared = 0;  // becomes the running sum over lamps that share rays
+  double shared = 0;  // becomes the running sum over luminaires that share rays
   std::size_t kept = 0;
   for (const Over& luminaire : over) {
     if (luminaire.gives > kMuch * all) {
@@ -264,7 +265,7 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
 
 /// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
 EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, std::uint32_t rays, std::uint64_t key) {
-  if (luminaire.mirror != kNoMirror) return {};  // mirrors turn the lamp's own rays
+  if (luminaire.mirror != kNoMirror) return {};  // mirrors turn the luminaire's own rays
   double sent = 0, arrived = 0, escaped = 0;
   for (std::uint32_t k = 0; k < rays; ++k) {
     const auto u = sobol4(k, key);
@@ -283,7 +284,7 @@ EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, 
   return {.emitted = flux, .absorbed = flux * (sent - arrived - escaped) / sent, .escaped = flux * escaped / sent};
 }
 
-/// Many lamps share the rays of four.
+/// Many luminaires share the rays of four.
 void balance_luminaires(const Problem& problem, DirectLight& direct, const DirectOptions& options) {
   const std::size_t count = problem.lights.luminaires.size();
   if (count == 0) return;

@@ -11,7 +11,7 @@
 namespace clerestory {
 
 struct DirectOptions {
-  int shadow_rays = 16;  ///< shadow rays from a patch to each lamp and sun
+  int shadow_rays = 16;  ///< shadow rays from a patch to each luminaire and sun
   int edge_rays = 256;   ///< instead, where as many rays of a pilot disagree: the patch lies on the edge of a shadow
   int sky_rays = 256;    ///< cosine rays a patch that look for the sky; 0: without sky but through openings
   std::uint64_t seed = 1;

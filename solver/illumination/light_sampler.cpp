@@ -91,7 +91,7 @@ LightSampler::Shares LightSampler::shares(const Vec3& p, const Vec3& n) const {
     if (dot(n, sun.direction) > -0.01) s.suns = suns_power_;  // the disc is half a degree wide
   const double sum = s.patches + s.luminaires + s.suns;
   if (!(sum > 0)) return {};
-  // Half of the choice is even: power says little about a lamp indoors beside a sun that does not get in.
+  // Half of the choice is even: power says little about a luminaire indoors beside a sun that does not get in.
   const int groups = (s.patches > 0) + (s.luminaires > 0) + (s.suns > 0);
   for (double* share : {&s.patches, &s.luminaires, &s.suns})
     if (*share > 0) *share = (*share / sum + 1.0 / groups) / 2;
@@ -181,7 +181,7 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, s
     else
       shadows.send(p, to, irradiance);
   };
-  // In the tree's order lamps that share a packet are neighbours.
+  // In the tree's order luminaires that share a packet are neighbours.
   const double lift = rays.lift();
   for (const std::uint32_t number : luminaires_.order()) {
     const PlacedLuminaire& luminaire = problem_.lights.luminaires[number];

@@ -26,7 +26,8 @@ struct LightSample {
 class LightSampler {
  public:
   /// glow  N x channels, what the patches send out of themselves: M for paths, which find reflected light on their way;
-  ///       B for a gather, where the sun's patch on the floor is as much of a lamp as the lamp. Outlives the sampler.
+  ///       B for a gather, where the sun's patch on the floor is as much of a luminaire as the luminaire. Outlives the
+  ///       sampler.
   LightSampler(const Problem& problem, const Field& glow);
 
   bool empty() const { return bright_.empty() && luminaires_.empty() && suns_power_ == 0; }
@@ -46,8 +47,8 @@ class LightSampler {
   /// The same where a ray from p along d (unit) ends; 0 when that is no bright patch that shadow rays look for.
   double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const;
 
-  /// Irradiance at p of luminaires and of the sun: a shadow ray to each lamp, more to openings that are near, sun_rays
-  /// to each sun.
+  /// Irradiance at p of luminaires and of the sun: a shadow ray to each luminaire, more to openings that are near,
+  /// sun_rays to each sun.
   Spectrum delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace clerestory {
 namespace {
 
-/// Mean of sun and lamp light over leaves of one element, and whether it varies among their corners.
+/// Mean of sun and luminaire light over leaves of one element, and whether it varies among their corners.
 struct DeltaLight {
   Spectrum mean;
   bool varies = false;
@@ -41,8 +41,8 @@ Field without_delta_light(const VertexField& field) {
   return rest;
 }
 
-/// Irradiance of the leaves from that at their vertices; where sun or lamp light varies among the corners of what was
-/// one element for transport, their mean of it is put right by the exact flux that the transport found there.
+/// Irradiance of the leaves from that at their vertices; where sun or luminaire light varies among the corners of what
+/// was one element for transport, their mean of it is put right by the exact flux that the transport found there.
 Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
                       const HierarchicalSolution& coarse, const VertexField& field) {
   Field E = leaf_irradiance(mesh, field.E);
@@ -66,8 +66,8 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
   return E;
 }
 
-/// Scales what the field has of all light but that of sun and lamps, so that its flux is that of the transport: the
-/// vertices share their directions, and so a small error, while the bundles of the elements are independent of each
+/// Scales what the field has of all light but that of sun and luminaires, so that its flux is that of the transport:
+/// the vertices share their directions, and so a small error, while the bundles of the elements are independent of each
 /// other. What differs by more is no such error, and stays.
 void correct_flux(const HierarchicalSolution& coarse, const Field& E, const ElementMesh& mesh, VertexField& field) {
   constexpr double kMost = 0.01;  // totals of fields were 0.1 to 0.3 % low before this; no scene came near 1 %

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct WebLuminaire {
   Spectrum& colour() { return scale; }
   const Spectrum& colour() const { return scale; }
 };
+
+/// In the order of Luminaire::kind; file: of a photometric file.
+inline constexpr std::string_view kLuminaireKindNames[] = {"point", "spot", "file"};
 
 struct Luminaire {
   std::string name;

@@ -98,14 +98,14 @@ Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, in
   return seen;
 }
 
-/// Whether one of the lamps or glowing patches lights patch i without a bounce: for what sees nothing but them.
+/// Whether one of the luminaires or glowing patches lights patch i without a bounce: for what sees nothing but them.
 struct Found {
   bool lit = false;              ///< by a luminaire
   std::vector<PatchId> glowing;  ///< patches that light it
 };
 
-Found look_for_luminaires(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
-                          std::uint64_t seed) {
+Found look_for_lights(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
+                      std::uint64_t seed) {
   const auto corners = problem.patches.corner_positions(PatchId{i});
   const Vec3 n = problem.patches.normal[i];
   const double lift = problem.rays.lift();
@@ -134,7 +134,7 @@ Found look_for_luminaires(const Problem& problem, const LightSampler& emitters, 
   return found;
 }
 
-/// Sides that rays of the luminaires meet. Many lamps share the rays of sixteen: they stand in the same rooms.
+/// Sides that rays of the luminaires meet. Many luminaires share the rays of sixteen: they stand in the same rooms.
 void light_by_luminaires(const Problem& problem, std::uint64_t seed, Spaces& spaces) {
   const std::vector<PlacedLuminaire>& luminaires = problem.lights.luminaires;
   const std::size_t count = luminaires.size();
@@ -174,14 +174,14 @@ void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& space
 }
 
 /// Lets the given patches look for luminaires and for the patches that glow.
-void search_luminaires(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
-                       std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
+void search_lights(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
+                   std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
   const LightSampler emitters(problem, glow);
   for (std::size_t begin = 0; begin < receivers.size() && !monitor.should_stop(); begin += kBlock) {
     std::vector<Found> found(std::min(kBlock, receivers.size() - begin));
     parallel_for(found.size(), 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k)
-        found[k] = look_for_luminaires(problem, emitters, receivers[begin + k], samples, seed);
+        found[k] = look_for_lights(problem, emitters, receivers[begin + k], samples, seed);
     });
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (found[k].lit) spaces.light(receivers[begin + k]);
@@ -231,7 +231,7 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
   }
   waiting = {};
 
-  // In the open a patch may see nothing but lamps, which rays seldom meet.
+  // In the open a patch may see nothing but luminaires, which rays seldom meet.
   std::vector<std::uint32_t> in_doubt, in_glow;
   Field lonely(n, patches.channels);  // emitters that have not met what they light
   bool any_lonely = false;
@@ -242,19 +242,19 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
     lonely.set(i, patches.M[i]);
     any_lonely = true;
   }
-  search_luminaires(problem, patches.M, in_doubt, kLuminaireSamples, seed, monitor, spaces);
+  search_lights(problem, patches.M, in_doubt, kLuminaireSamples, seed, monitor, spaces);
   if (any_lonely) {
-    // Seldom: the inside of a lamp, which no one finds, or a lamp in the open. So the effort has a bound.
+    // Seldom: the inside of a luminaire, which no one finds, or a luminaire in the open. So the effort has a bound.
     const std::size_t samples =
         std::clamp<std::size_t>((1 << 22) / std::max<std::size_t>(in_glow.size(), 1), 1, kLuminaireSamples);
-    search_luminaires(problem, lonely, in_glow, samples, seed, monitor, spaces);
+    search_lights(problem, lonely, in_glow, samples, seed, monitor, spaces);
   }
 
   std::vector<char> lights_others(patches.materials.size(), 0);
   for (std::size_t i = 0; i < n; ++i)
     if (!patches.M[i].is_black() && !spaces.only_material(i).valid()) lights_others[patches.material(PatchId{i})] = 1;
 
-  // Of a wide lamp in the open only the part nearby may have found what it lights.
+  // Of a wide luminaire in the open only the part nearby may have found what it lights.
   std::vector<std::uint32_t> emitting;
   for (std::uint32_t i = 0; i < n; ++i)
     if (!patches.M[i].is_black()) emitting.push_back(i);

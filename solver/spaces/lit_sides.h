@@ -12,15 +12,15 @@ namespace clerestory {
 struct LitSides {
   std::vector<bool> wanted;             ///< 2T, for make_patches()
   std::size_t dark_sides = 0;           ///< sides no light reaches: inside solids, outside of sealed rooms
-  std::size_t luminaire_interiors = 0;  ///< emitting sides that only see the inside of their own lamp body
+  std::size_t luminaire_interiors = 0;  ///< emitting sides that only see the inside of their own luminaire body
 };
 
 /// Follows light over rays from luminaires, sky, sun and emitting sides to every side it can reach in any number of
 /// bounces. Sides that see each other form a space; a space is dropped when no light gets in. An emitting side is
 /// dropped too when its light meets no other surface (the outside of a glowing room), or only the inside of the same
-/// lamp body while the body's outside lights a space with other surfaces.
+/// luminaire body while the body's outside lights a space with other surfaces.
 ///
-/// Where lamps are the only light of an open scene, each side looks for them by shadow rays of its own. When the
+/// Where luminaires are the only light of an open scene, each side looks for them by shadow rays of its own. When the
 /// monitor stops the search, all sides not looked at take part.
 ///
 /// problem  with all sides as patches, as build_patches() leaves them.

@@ -14,7 +14,7 @@ namespace clerestory {
 namespace {
 
 constexpr int kMostReflections = 64;     // of one ray; what is left is lost
-constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of lamps
+constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of luminaires
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Device {

@@ -93,7 +93,7 @@ class RayScene {
 
   bool has_glass() const;
   bool has_mirrors() const;
-  /// The planes of mirrors, no more than 64 of them: rays are reflected by all, lamps have images in these.
+  /// The planes of mirrors, no more than 64 of them: rays are reflected by all, luminaires have images in these.
   const std::vector<MirrorPlane>& mirrors() const;
   /// Distance by which ray ends are lifted along their surface's normal, so that rounding to float cannot put them
   /// behind it: a few units in the last place at the rim of the scene [m].

@@ -8,6 +8,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
+#include "apps/finish_report.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
 #include "solver/lights/luminaire.h"
@@ -115,14 +116,10 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   say_lights(scene, console);
 
   report.settings = as_figures(settings, patches.channels, arguments.read);
-  report.threads = arguments.common.threads;
   report.repairs = repairs;
   report.counts.triangles = patches.triangle_count();
   report.counts.sensors = sensors.sensor_count();
-  report.seconds.total = console.elapsed();
-  report.peak_memory_bytes = peak_memory_bytes();
-  report.warnings = console.warnings();
-  if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
+  finish_report(report, arguments.common, console);
   return kDone;
 }
 

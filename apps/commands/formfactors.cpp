@@ -10,6 +10,7 @@
 #include "pipeline/wording.h"
 
 #include "apps/commands/commands.h"
+#include "apps/finish_report.h"
 #include "apps/run.h"
 #include "io/atomic_file.h"
 #include "io/run_report.h"
@@ -141,17 +142,11 @@ ExitCode formfactors_command(const Arguments& arguments, Console& console) {
   if (groups.name.size() > kRowsShown)
     console.say("row sums of " + std::to_string(groups.name.size() - kRowsShown) + " more groups are not shown");
   console.say("reciprocity error " + four_digits(factors.reciprocity_error));
-  if (!arguments.common.report.empty()) {
-    RunReport report = new_report(arguments.input);
-    report.threads = arguments.common.threads;
-    report.counts.triangles = patches.triangle_count();
-    report.counts.elements = patches.patch_count();
-    report.counts.rays = factors.rays;
-    report.seconds.total = console.elapsed();
-    report.peak_memory_bytes = peak_memory_bytes();
-    report.warnings = console.warnings();
-    write_report(arguments.common.report, report);
-  }
+  RunReport report = new_report(arguments.input);
+  report.counts.triangles = patches.triangle_count();
+  report.counts.elements = patches.patch_count();
+  report.counts.rays = factors.rays;
+  finish_report(report, arguments.common, console);
   console.say("results " + arguments.output);
   return kDone;
 }

@@ -8,6 +8,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
+#include "apps/finish_report.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
 #include "io/atomic_file.h"
@@ -39,7 +40,6 @@ ExitCode mesh_command(const Arguments& arguments, Console& console) {
   const auto& [patches, repairs, rays, lights, lit] = *prepared;
 
   report.settings = as_figures(settings, patches.channels, arguments.read);
-  report.threads = arguments.common.threads;
   report.repairs = repairs;
   report.counts.triangles = patches.triangle_count();
   report.counts.elements = patches.patch_count();
@@ -49,10 +49,7 @@ ExitCode mesh_command(const Arguments& arguments, Console& console) {
   console.say(arguments.input + ": " + counted(report.counts.elements, "patch side") + " on " +
               counted(report.counts.triangles, "triangle") + ", " + counted(lit.dark_sides, "dark side") + " left out");
   say_mesh(repairs, console);
-  report.seconds.total = console.elapsed();
-  report.peak_memory_bytes = peak_memory_bytes();
-  report.warnings = console.warnings();
-  if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
+  finish_report(report, arguments.common, console);
   console.say("results " + arguments.output);
   return kDone;
 }

@@ -8,6 +8,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
+#include "apps/finish_report.h"
 #include "apps/run.h"
 #include "apps/solve_report.h"
 #include "io/atomic_file.h"
@@ -104,16 +105,13 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   Lap writing;
   fill_report(report, scene, solved);
   report.settings = as_figures(solved.settings, solved.patches.channels, arguments.read);
-  report.threads = arguments.common.threads;
   write_outputs(arguments, scene, solved, report);
   writing.add_to(write);
 
   const ExitCode code = exit_code(solved);
   say_why(code, solved, console);
-  report.seconds.read = read, report.seconds.write = write, report.seconds.total = console.elapsed();
-  report.peak_memory_bytes = peak_memory_bytes();
-  report.warnings = console.warnings();
-  if (!arguments.common.report.empty()) write_report(arguments.common.report, report);
+  report.seconds.read = read, report.seconds.write = write;
+  finish_report(report, arguments.common, console);
   say_summary(report, solved, console);
   console.say("  results " + arguments.output + (has_sensors ? ", " + sensors_output(arguments).string() : "") +
               (arguments.common.report.empty() ? "" : ", " + arguments.common.report));

@@ -1,0 +1,13 @@
+#include "apps/finish_report.h"
+
+namespace clerestory {
+
+void finish_report(RunReport& report, const CommonArguments& arguments, const Console& console) {
+  report.threads = arguments.threads;
+  report.seconds.total = console.elapsed();
+  report.peak_memory_bytes = peak_memory_bytes();
+  report.warnings = console.warnings();
+  if (!arguments.report.empty()) write_report(arguments.report, report);
+}
+
+}  // namespace clerestory

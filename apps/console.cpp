@@ -5,10 +5,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "pipeline/wording.h"
-
 #include "apps/interrupt.h"
 #include "io/atomic_file.h"
+#include "pipeline/wording.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
 

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/observer.h"
-
 #include "apps/arguments.h"
 #include "apps/progress_line.h"
+#include "pipeline/observer.h"
 #include "solver/model/monitor.h"
 
 namespace clerestory {

@@ -4,11 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/settings.h"
-
 #include "apps/arguments.h"
 #include "io/read_scene.h"
 #include "io/run_report.h"
+#include "pipeline/settings.h"
 
 namespace clerestory {
 

@@ -5,9 +5,8 @@
 #include <map>
 #include <tuple>
 
-#include "pipeline/wording.h"
-
 #include "io/text.h"
+#include "pipeline/wording.h"
 #include "solver/evaluate/sensor_summary.h"
 #include "solver/lights/luminaire.h"
 #include "solver/methods/form_factor_matrix.h"

@@ -1,10 +1,9 @@
 #pragma once
 // What is told about a solve: figures for the report, lines for people.
 
-#include "pipeline/solved.h"
-
 #include "apps/console.h"
 #include "io/run_report.h"
+#include "pipeline/solved.h"
 #include "solver/model/scene.h"
 
 namespace clerestory {

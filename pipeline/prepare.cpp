@@ -3,12 +3,11 @@
 #include <limits>
 #include <utility>
 
+#include "meshing/build_patches.h"
+#include "meshing/make_lightmap.h"
 #include "pipeline/lap.h"
 #include "pipeline/scene_checks.h"
 #include "pipeline/wording.h"
-
-#include "meshing/build_patches.h"
-#include "meshing/make_lightmap.h"
 #include "solver/illumination/place_lights.h"
 #include "solver/model/error.h"
 #include "solver/run/memory_estimate.h"
@@ -67,14 +66,13 @@ std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, con
 }  // namespace
 
 std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, const Monitor& monitor,
-                                StageSeconds* seconds) {
-  StageSeconds nobody_asks;
-  return prepare_in({}, scene, settings, monitor, seconds ? *seconds : nobody_asks);
+                                StageSeconds& seconds) {
+  return prepare_in({}, scene, settings, monitor, seconds);
 }
 
 std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& settings, Observer& observer,
                                                 const Monitor& monitor, StageSeconds& seconds) {
-  if (!settings.memory_limit) return with_points(prepare(scene, settings, monitor, &seconds), scene, seconds);
+  if (!settings.memory_limit) return with_points(prepare(scene, settings, monitor, seconds), scene, seconds);
   const std::size_t limit = *settings.memory_limit, faces = scene.polygons.face_count();
   const double asked = settings.max_element.value_or(0), wanted = target_triangles(settings.solve);
   std::size_t fit = triangles_that_fit(faces, limit);

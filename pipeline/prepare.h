@@ -5,7 +5,6 @@
 
 #include "pipeline/observer.h"
 #include "pipeline/settings.h"
-
 #include "solver/illumination/problem.h"
 #include "solver/model/mesh_report.h"
 #include "solver/model/monitor.h"
@@ -28,8 +27,8 @@ struct Prepared {
 
 /// Nothing when interrupted before the patches were complete. seconds: mesh and build are added to.
 /// throws  InputError as build_patches().
-std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, const Monitor& monitor = {},
-                                StageSeconds* seconds = nullptr);
+std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, const Monitor& monitor,
+                                StageSeconds& seconds);
 
 struct PreparedToSolve {
   Prepared scene;

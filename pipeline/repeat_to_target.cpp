@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "pipeline/wording.h"
-
 #include "solver/model/error.h"
 #include "solver/run/accuracy.h"
 

@@ -6,7 +6,6 @@
 
 #include "pipeline/observer.h"
 #include "pipeline/solved.h"
-
 #include "solver/model/monitor.h"
 
 namespace clerestory {

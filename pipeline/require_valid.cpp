@@ -4,7 +4,6 @@
 #include <string>
 
 #include "pipeline/wording.h"
-
 #include "solver/model/error.h"
 
 namespace clerestory {

@@ -2,7 +2,6 @@
 // Scenes and settings made by a program are checked like those of files.
 
 #include "pipeline/settings.h"
-
 #include "solver/model/scene.h"
 
 namespace clerestory {

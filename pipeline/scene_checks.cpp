@@ -4,9 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/wording.h"
-
 #include "io/scene_file/nearest_name.h"
+#include "pipeline/wording.h"
 #include "solver/gather/gather.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/error.h"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "pipeline/observer.h"
-
 #include "solver/evaluate/sensor_planes.h"
 #include "solver/illumination/problem.h"
 #include "solver/model/scene.h"

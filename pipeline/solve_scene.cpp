@@ -7,7 +7,6 @@
 #include "pipeline/repeat_to_target.h"
 #include "pipeline/require_valid.h"
 #include "pipeline/scene_checks.h"
-
 #include "solver/evaluate/sensor_planes.h"
 #include "solver/run/accuracy.h"
 
@@ -54,13 +53,12 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         lap.add_to(seconds.reconstruct);
 
         // -> how wrong both are.
-        const ErrorEffort effort = clerestory::effort(options.accuracy, options.tighten).error;
+        const ErrorEffort spend = effort(options.accuracy, options.tighten).error;
         if (!monitor.should_stop())
-          out.error =
-              if_measured(measure_error(problem, solved.lightmap, effort, solution.rays, options.seed, monitor));
+          out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, monitor));
         if (!monitor.should_stop() && !sensors.planes.empty())
           out.error_sensors = if_measured(
-              measure_sensor_error(problem, sensors.planes, at_planes.E, effort, solution.rays, options.seed, monitor));
+              measure_sensor_error(problem, sensors.planes, at_planes.E, spend, solution.rays, options.seed, monitor));
         if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
         lap.add_to(seconds.measure);
 

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "pipeline/settings.h"
-
 #include "solver/evaluate/measured_error.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/mesh_report.h"

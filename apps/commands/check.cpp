@@ -2,15 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "pipeline/prepare.h"
-#include "pipeline/scene_checks.h"
-#include "pipeline/wording.h"
-
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
 #include "apps/finish_report.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
+#include "pipeline/prepare.h"
+#include "pipeline/scene_checks.h"
+#include "pipeline/wording.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/units.h"
 
@@ -99,7 +98,7 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();
 
-  const auto prepared = prepare(scene, settings, console.monitor(), &report.seconds);
+  const auto prepared = prepare(scene, settings, console.monitor(), report.seconds);
   if (!prepared) {
     console.warn("interrupted before the mesh was complete; nothing more is known.");
     return kInterrupted;

@@ -7,8 +7,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "pipeline/wording.h"
-
 #include "apps/commands/commands.h"
 #include "apps/finish_report.h"
 #include "apps/run.h"
@@ -17,6 +15,7 @@
 #include "io/scene_file/nearest_name.h"
 #include "io/write_result.h"
 #include "meshing/triangulate_polygon.h"
+#include "pipeline/wording.h"
 #include "solver/form_factors/surface_form_factors.h"
 #include "solver/model/error.h"
 

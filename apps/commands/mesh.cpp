@@ -2,10 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "pipeline/prepare.h"
-#include "pipeline/scene_checks.h"
-#include "pipeline/wording.h"
-
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
 #include "apps/finish_report.h"
@@ -13,6 +9,9 @@
 #include "apps/run.h"
 #include "io/atomic_file.h"
 #include "io/write_result.h"
+#include "pipeline/prepare.h"
+#include "pipeline/scene_checks.h"
+#include "pipeline/wording.h"
 
 namespace clerestory {
 namespace {
@@ -32,7 +31,7 @@ ExitCode mesh_command(const Arguments& arguments, Console& console) {
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();
 
-  const auto prepared = prepare(scene, settings, console.monitor(), &report.seconds);
+  const auto prepared = prepare(scene, settings, console.monitor(), report.seconds);
   if (!prepared) {
     console.warn("interrupted before the mesh was complete; nothing is written.");
     return kInterrupted;

@@ -2,10 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "pipeline/lap.h"
-#include "pipeline/solve_scene.h"
-#include "pipeline/wording.h"
-
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
 #include "apps/finish_report.h"
@@ -16,6 +12,9 @@
 #include "io/write_debug.h"
 #include "io/write_result.h"
 #include "io/write_sensors.h"
+#include "pipeline/lap.h"
+#include "pipeline/solve_scene.h"
+#include "pipeline/wording.h"
 #include "solver/model/error.h"
 
 namespace clerestory {

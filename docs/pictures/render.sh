@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bash tests/paraview/get_paraview.sh
-program=$PWD/build/release/bin/clerestory root=$PWD/build/paraview/root results=$PWD/build/pictures
+program=$PWD/build/release/bin/clerestory results=$PWD/build/pictures
 mkdir -p "$results"
 
 for scene in house classroom office office_march light_shelf; do
@@ -16,10 +16,4 @@ done
   --debug-output "$results/debug" --quiet
 "$program" mesh data/scenes/house.json -o "$results/house_patches.vtp" --quiet
 
-exec 3< <(exec Xvfb -displayfd 1 -noreset -nolisten tcp 2>"$results/xvfb.log")
-screen=$!
-trap 'kill $screen' EXIT
-read -r -u 3 number || { cat "$results/xvfb.log" >&2; exit 1; }
-DISPLAY=:$number PYTHONPATH=$root/usr/lib/python3/dist-packages \
-  LD_LIBRARY_PATH=$root/lib/$(uname -m)-linux-gnu:$root/usr/lib/$(uname -m)-linux-gnu \
-  "$root/usr/bin/pvpython" --force-offscreen-rendering docs/pictures/render.py "$results" docs/pictures "$@"
+bash tests/paraview/pvpython.sh docs/pictures/render.py "$results" docs/pictures "$@"

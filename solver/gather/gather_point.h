@@ -13,8 +13,7 @@ namespace clerestory {
 struct GatheredLight {
   Spectrum E;            ///< from everything
   Spectrum delta_light;  ///< from luminaires and suns, by shadow rays only; part of E
-  double std_error =
-      0;  ///< standard error of E from the bundle, luminous mean, by the differences of neighbouring rays
+  double std_error = 0;  ///< of E, luminous mean, by the differences of the bundle's neighbouring rays
 };
 
 /// Rays for each stratum as powers of 2: where a pilot's ray and its neighbours' come back alike, the least. Empty: the
@@ -40,9 +39,9 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 /// Luminaires and sun by shadow rays. What lies behind the openings of the plan by rays through them, and its bright
 /// areas by rays at them, and by nothing else: a ray belongs to the first of the openings that it passes, else to the
 /// bright area that it meets. Only what differs from the mean that the plan knows is left to chance: form factors times
-/// that mean are closed forms, so an even sky or lamp that nothing hides is exact. Other bright patches, glowing or
-/// lit, by shadow rays and by the bundle, weighted by the balance heuristic; the rest by the bundle, which looks up B
-/// (or the sky) where its rays land.
+/// that mean are closed forms, so an even sky or bright area that nothing hides is exact. Other bright patches, glowing
+/// or lit, by shadow rays and by the bundle, weighted by the balance heuristic; the rest by the bundle, which looks up
+/// B (or the sky) where its rays land.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.

@@ -62,7 +62,7 @@ struct Surroundings {
 /// what escapes or is lost, exactly.
 ///
 /// bundle  sent from this area, R rays.
-/// pairs   L, a multiple of 16; 0: bright patches are left to the bundle.
+/// pairs   L; 0: bright patches are left to the bundle.
 /// key     of the receiver.
 void find_arrivals(const ReceiverArea& area, const Bundle& bundle, const Surroundings& around, int pairs,
                    std::uint64_t key, Arrivals& out);

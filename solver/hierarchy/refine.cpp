@@ -141,19 +141,6 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
 
 namespace {
 
-double area_median(const PatchSet& patches, const Field& E) {
-  std::vector<std::pair<double, double>> by_light;
-  double half = 0;
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
-    by_light.emplace_back(luminous_mean(E[i]), patches.area[i]);
-    half += patches.area[i] / 2;
-  }
-  std::sort(by_light.begin(), by_light.end());
-  for (const auto& [value, area] : by_light)
-    if ((half -= area) <= 0) return value;
-  return 0;
-}
-
 double triangle_area(const std::array<Vec3, 3>& c) { return length(cross(c[1] - c[0], c[2] - c[0])) / 2; }
 
 }  // namespace

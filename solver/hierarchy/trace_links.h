@@ -28,7 +28,7 @@ struct LinkOptions {
 /// (arrivals.h), which is cut at the nodes of the tree into links, within uniform * E_p (cut_row.h).
 ///
 /// light  made with what the bright sources send more than their surroundings; its problem is that of the leaves.
-/// B      N x channels, radiosity known so far, or what it is above a level; empty: nothing is merged.
+/// B      N x channels, radiosity known so far, or what it is above its ground light; empty: nothing is merged.
 /// direct light that the links do not bring; sky through the openings it has looked at is not looked for again.
 /// Cost   R + L rays for each receiver; 8 bytes a link.
 Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const DirectLight& direct,

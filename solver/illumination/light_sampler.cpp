@@ -16,9 +16,23 @@
 namespace clerestory {
 namespace {
 
-/// Half of the area of all patches glows no more than this (luminous mean), to the precision of float. The bits of a
-/// positive float order like its value: three passes over histograms of 11, 11 and 10 of them need no memory.
+LightBounds bounds_of_patch(const PatchSet& patches, PatchId q, double flux) {
+  const auto c = patches.corner_positions(q);
+  return {{std::min({c[0].x, c[1].x, c[2].x}), std::min({c[0].y, c[1].y, c[2].y}), std::min({c[0].z, c[1].z, c[2].z})},
+          {std::max({c[0].x, c[1].x, c[2].x}), std::max({c[0].y, c[1].y, c[2].y}), std::max({c[0].z, c[1].z, c[2].z})},
+          patches.normal[q],
+          0,
+          flux};
+}
+
+/// Circular cross-section of the scene: what a sun lights at most [m2].
+double cross_section(const RayScene& rays) { return std::numbers::pi / 4 * rays.diameter() * rays.diameter(); }
+
+}  // namespace
+
 double area_median(const PatchSet& patches, const Field& glow) {
+  // The bits of a positive float order like its value: three passes over histograms of 11, 11 and 10 of them need no
+  // memory.
   const auto bits = [&](std::size_t i) {
     return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(luminous_mean(glow[i]), 0.0)));
   };
@@ -40,20 +54,6 @@ double area_median(const PatchSet& patches, const Field& glow) {
   }
   return std::bit_cast<float>(found);
 }
-
-LightBounds bounds_of_patch(const PatchSet& patches, PatchId q, double flux) {
-  const auto c = patches.corner_positions(q);
-  return {{std::min({c[0].x, c[1].x, c[2].x}), std::min({c[0].y, c[1].y, c[2].y}), std::min({c[0].z, c[1].z, c[2].z})},
-          {std::max({c[0].x, c[1].x, c[2].x}), std::max({c[0].y, c[1].y, c[2].y}), std::max({c[0].z, c[1].z, c[2].z})},
-          patches.normal[q],
-          0,
-          flux};
-}
-
-/// Circular cross-section of the scene: what a sun lights at most [m2].
-double cross_section(const RayScene& rays) { return std::numbers::pi / 4 * rays.diameter() * rays.diameter(); }
-
-}  // namespace
 
 LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_(problem), glow_(glow) {
   const PatchSet& patches = problem.patches;

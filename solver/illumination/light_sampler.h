@@ -14,6 +14,10 @@ namespace clerestory {
 /// facade in the sun must not hide the sun's patch in the room behind it.
 inline constexpr double kBrighter = 4;
 
+/// Half of the area of all patches has no more of x (N x channels, >= 0) than this: luminous mean, to the precision of
+/// float.
+double area_median(const PatchSet& patches, const Field& x);
+
 /// One point of a light, as seen from where its light is asked for.
 struct LightSample {
   Vec3 end;             ///< where the shadow ray goes to, lifted [m]
@@ -26,8 +30,7 @@ struct LightSample {
 class LightSampler {
  public:
   /// glow  N x channels, what the patches send out of themselves: M for paths, which find reflected light on their way;
-  ///       B for a gather, where the sun's patch on the floor is as much of a luminaire as the luminaire. Outlives the
-  ///       sampler.
+  ///       B for a gather, where the sun's patch on the floor is a light like any glowing panel. Outlives the sampler.
   LightSampler(const Problem& problem, const Field& glow);
 
   bool empty() const { return bright_.empty() && luminaires_.empty() && suns_power_ == 0; }
@@ -35,7 +38,7 @@ class LightSampler {
   const Field& glow() const { return glow_; }
   bool is_bright(PatchId p) const { return has_bright_patches() && number_of_patch_[p] != LightTree::kNone; }
 
-  /// Light chosen by `pick` in [0, 1), and the point (u, v) of it, for receiver point p with normal n. Glowing patches
+  /// Light chosen by `pick` in [0, 1), and the point (u, v) of it, for receiver point p with normal n. Bright patches
   /// only when `bright_patches_only`; otherwise patches, luminaires and suns share the choice by their power first.
   LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool bright_patches_only) const;
 

@@ -32,7 +32,7 @@ constexpr double kMostRays = 1.5e7;
 /// Scenes of few elements cost next to nothing, and their energy would hang on few rays: they get more of them.
 constexpr std::size_t kFewLeaves = 1500;
 constexpr int kMostOfOne = 1024;       // rays of one receiver; by judgement
-constexpr double kDarkestShare = 0.1;  // share of a space's area that is no brighter than its ground level
+constexpr double kDarkestShare = 0.1;  // share of a space's area that is no brighter than its ground light
 
 /// Quality of one round: thresholds fall from round to round.
 struct Quality {
@@ -78,7 +78,7 @@ Field inherited(const Field& B, std::span<const std::uint32_t> were_leaves, cons
   return out;
 }
 
-/// What bright sources are told by: B without the part of their space's ground level that has gone round eight times or
+/// What bright sources are told by: B without the part of their space's ground light that has gone round eight times or
 /// more. In a very bright room that is most of the light, it comes from everywhere, and bundles know it exactly; lamps
 /// must stand out before it, or the energy they send would be met by chance.
 Field above_ground(const PatchSet& leaves, const Field& B, const Round& round) {

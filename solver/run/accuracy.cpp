@@ -104,7 +104,7 @@ Effort effort(Accuracy accuracy, int times) {
        {&e.bundle_rays, &e.bright_rays, &e.direct.edge_rays, &e.direct.sky_rays, &e.paths, &e.paths_of_sensor})
     *rays <<= times;
   e.rays_per_patch = std::ldexp(e.rays_per_patch, times);
-  e.vertex_tolerance *= std::pow(0.7071, times);
+  e.vertex_tolerance *= std::pow(kTighterEdge, times);
   tighten(e.vertices, times);
   tighten(e.sensors, times);
   // A small error needs a sharp measurement.

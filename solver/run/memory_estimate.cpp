@@ -25,12 +25,9 @@ namespace {
 constexpr double kProgram = 27 << 20;
 constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 200, kPoint = 260, kLink = 10;  // [B]
 
-constexpr int kFewestRays = 32;
 constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all that was measured
 constexpr double kElementsOfPoint = 2;
 constexpr double kConforming = 2;  // points for one that is asked for: neighbours are halved as well
-
-constexpr MemoryPlan kLeast{.bundle_rays = kFewestRays, .bright_rays = 16};
 
 double links_of_element(const MemoryPlan& p, double elements) {
   const double rays = p.bundle_rays + p.bright_rays;
@@ -49,11 +46,11 @@ std::size_t predicted_memory(const MemoryCounts& c) {
 std::optional<MemoryPlan> plan_memory(const MemoryCounts& whole, const MemoryPlan& wish, std::size_t limit) {
   const auto sides = static_cast<double>(whole.sides);
   MemoryPlan plan = wish;
-  for (;; plan.bundle_rays /= 2, plan.bright_rays = std::max(16, plan.bright_rays / 2)) {
+  for (;; plan.bundle_rays /= 2, plan.bright_rays = std::max(kLeastPlan.bright_rays, plan.bright_rays / 2)) {
     const double links = kLink * links_of_element(plan, sides);
     const double room = static_cast<double>(limit) - static_cast<double>(predicted_memory(whole)) - links * sides;
     if (room < 0) {
-      if (plan.bundle_rays < 2 * kFewestRays) return {};
+      if (plan.bundle_rays < 2 * kLeastPlan.bundle_rays) return {};
       continue;
     }
     // What is left is shared by halves for transport and by points that are shown.
@@ -67,11 +64,12 @@ std::optional<MemoryPlan> plan_memory(const MemoryCounts& whole, const MemoryPla
 
 std::size_t least_memory(const MemoryCounts& whole) {
   const auto sides = static_cast<double>(whole.sides);
-  return predicted_memory(whole) + static_cast<std::size_t>(kLink * links_of_element(kLeast, sides) * sides);
+  return predicted_memory(whole) + static_cast<std::size_t>(kLink * links_of_element(kLeastPlan, sides) * sides);
 }
 
 std::size_t triangles_that_fit(std::size_t input_triangles, std::size_t limit) {
-  const double of_triangle = kTriangle + 2 * (kSide + kElement + 0.7 * kPoint + kLink * links_of_element(kLeast, 0));
+  const double of_triangle =
+      kTriangle + 2 * (kSide + kElement + 0.7 * kPoint + kLink * links_of_element(kLeastPlan, 0));
   const double room = static_cast<double>(limit) - static_cast<double>(predicted_memory({input_triangles}));
   return room > 0 ? static_cast<std::size_t>(room / of_triangle) : 0;
 }

@@ -28,6 +28,9 @@ struct MemoryPlan {
   int bundle_rays = 0, bright_rays = 0;
 };
 
+/// Rays below which nobody goes, and nothing halved: for patches that leave no room for more.
+inline constexpr MemoryPlan kLeastPlan{.bundle_rays = 32, .bright_rays = 16};
+
 /// What `wish` becomes so that the peak stays below `limit` [bytes]: fewer points first, then fewer rays and so fewer
 /// links. Nothing when the patches alone are too many for it.
 ///

@@ -63,10 +63,9 @@ void require_possible(const Problem& problem, const SolveOptions& options) {
 
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
                                  const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
-  constexpr MemoryPlan kLeast{0, 0, 32, 16};
   require_possible(problem, options);
   const Effort e = effort_of(options);
-  const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeast);
+  const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeastPlan);
   const double shortest_edge = e.shortest_edge * longest_edge;
   HierarchicalField field = hierarchical_field(problem, std::move(map),
                                                {.elements = {.oracle = options.oracle,

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "pipeline/solve_scene.h"
-
 #include "solver/model/units.h"
 #include "solver/model/version.h"
 

@@ -3,7 +3,6 @@
 set -euo pipefail
 program=$1 results=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-root=$here/../../build/paraview/root
 
 rm -rf "$results" && mkdir -p "$results"
 for scene in furnace cornell_box office; do
@@ -11,12 +10,4 @@ for scene in furnace cornell_box office; do
     --accuracy draft --quiet
 done
 
-# Xvfb chooses a free screen and tells its number when it is ready.
-exec 3< <(exec Xvfb -displayfd 1 -noreset -nolisten tcp 2>"$results/xvfb.log")
-screen=$!
-trap 'kill $screen' EXIT
-read -r -u 3 number || { cat "$results/xvfb.log" >&2; exit 1; }
-
-DISPLAY=:$number PYTHONPATH=$root/usr/lib/python3/dist-packages \
-  LD_LIBRARY_PATH=$root/lib/$(uname -m)-linux-gnu:$root/usr/lib/$(uname -m)-linux-gnu \
-  "$root/usr/bin/pvpython" --force-offscreen-rendering "$here/open_results.py" "$results"
+bash "$here/pvpython.sh" "$here/open_results.py" "$results"

@@ -15,13 +15,22 @@ namespace {
 
 using test::PatchBuilder;
 
+/// Everything has the exitance 3 and the reflectance 1/2: B = E = 6 everywhere.
+struct Furnace {
+  static PatchSet glowing() {
+    test::RoomWithBlocks room = test::room_of_2160_patches();
+    room.exitance = 3;
+    return room.build();
+  }
+  PatchSet patches = glowing();
+  RayScene rays{patches};
+  Lights none{};
+  Problem problem{patches, rays, none};
+};
+
 TEST(GatherPoint, IsExactInAFurnace) {
-  test::RoomWithBlocks furnace = test::room_of_2160_patches();
-  furnace.exitance = 3;
-  const PatchSet patches = furnace.build();
-  const RayScene rays(patches);
-  const Lights none;
-  const Problem problem{patches, rays, none};
+  const Furnace furnace;
+  const auto& [patches, rays, none, problem] = furnace;
   Field B(patches.patch_count(), 1);
   for (double& b : B.value) b = 6;
   unsigned long long traced = 0;
@@ -65,12 +74,8 @@ TEST(GatherPoint, OfASmallLampAndASmallWindowHasNoBias) {
 }
 
 TEST(MeasuredError, IsNothingForAnExactFieldAndFindsAFieldThatIsFivePerCentTooBright) {
-  test::RoomWithBlocks furnace = test::room_of_2160_patches();
-  furnace.exitance = 3;
-  const PatchSet patches = furnace.build();
-  const RayScene rays(patches);
-  const Lights none;
-  const Problem problem{patches, rays, none};
+  const Furnace furnace;
+  const auto& [patches, rays, none, problem] = furnace;
   VertexLightmap lightmap;  // three points a patch are as good as any
   for (std::size_t i = 0; i < patches.patch_count(); ++i)
     lightmap.corners.push_back({static_cast<std::uint32_t>(3 * i), static_cast<std::uint32_t>(3 * i + 1),

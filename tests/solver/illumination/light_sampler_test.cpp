@@ -11,6 +11,7 @@
 #include "solver/lights/luminaire.h"
 #include "solver/model/random_stream.h"
 #include "solver/sampling/unit_square.h"
+#include "tests/support/lit_patches.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 
@@ -18,20 +19,11 @@ namespace clerestory {
 namespace {
 
 using test::PatchBuilder;
+using Lit = test::LitPatches;
 constexpr double kPi = std::numbers::pi;
 
 struct Place {
   Vec3 p, n;
-};
-
-/// Patches with what a sampler needs around them.
-struct Lit {
-  explicit Lit(PatchSet set, Lights with = {}) : patches(std::move(set)), rays(patches), lights(std::move(with)) {}
-  PatchSet patches;
-  RayScene rays;
-  Lights lights;
-  Problem problem{patches, rays, lights};
-  LightSampler sampler{problem, patches.M};
 };
 
 Vec3 anywhere(RandomStream& random) { return {random.uniform(), random.uniform(), random.uniform()}; }

@@ -12,6 +12,7 @@
 #include "solver/model/random_stream.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/spaces/lit_sides.h"
+#include "tests/support/lit_patches.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 
@@ -19,6 +20,7 @@ namespace clerestory {
 namespace {
 
 using test::PatchBuilder;
+using Lit = test::LitPatches;
 constexpr double kPi = std::numbers::pi;
 
 /// Of type C, f(gamma, C in degrees) every 2.5 and 15 degrees. With `opening` [m].
@@ -39,15 +41,6 @@ double cosine(double v, double) { return std::max(0.0, std::cos(v * kPi / 180));
 PlacedLuminaire lamp_at(const Vec3& position, std::shared_ptr<const PhotometricWeb> web, double scale = 1) {
   return {{"lamp", position, {}, WebLuminaire{std::move(web), {}, Spectrum(scale)}}};
 }
-
-struct Lit {
-  explicit Lit(PatchSet set, Lights with = {}) : patches(std::move(set)), rays(patches), lights(std::move(with)) {}
-  PatchSet patches;
-  RayScene rays;
-  Lights lights;
-  Problem problem{patches, rays, lights};
-  LightSampler sampler{problem, patches.M};
-};
 
 void expect_axes(const LuminaireAxes& a, const Vec3& x, const Vec3& y, const Vec3& z) {
   EXPECT_LT(length(a.x - x), 1e-12);

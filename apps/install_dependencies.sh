@@ -8,6 +8,7 @@ packages=(
   g++ cmake ninja-build
   libembree-dev libtbb-dev                # rays, threads
   libcgal-dev                             # meshing
+  libopenmesh-dev                         # elements, lightmaps
   libassimp-dev nlohmann-json3-dev        # models and scene files in
   libvtk9-dev                             # results out
   libopenimageio-dev                      # sky images in

@@ -25,7 +25,7 @@ struct Item {
 std::size_t root_count(const PatchSet& patches) {
   std::size_t roots = patches.splits.size();
   for (const SplitNode& s : patches.splits)
-    if (s.first_half != SplitNode::kNone) roots = std::min<std::size_t>(roots, s.first_half);
+    if (s.first_part != SplitNode::kNone) roots = std::min<std::size_t>(roots, s.first_part);
   return roots;
 }
 
@@ -52,9 +52,9 @@ class Builder {
   void for_leaves(std::uint32_t node, const Leaf& leaf) const {
     if (patches_.splits.empty()) return leaf(PatchId{std::size_t{node}});
     const SplitNode& s = patches_.splits[node];
-    if (s.first_half == SplitNode::kNone) return leaf(PatchId{std::size_t{s.patch}});
-    for_leaves(s.first_half, leaf);
-    for_leaves(s.first_half + 1, leaf);
+    if (s.first_part == SplitNode::kNone) return leaf(PatchId{std::size_t{s.patch}});
+    for_leaves(s.first_part, leaf);
+    for_leaves(s.first_part + 1, leaf);
   }
 
   void make_items() {
@@ -102,8 +102,8 @@ class Builder {
 
   double add_surface(std::uint32_t split, std::uint32_t parent) {
     const std::uint32_t node = open(parent, false);
-    if (!patches_.splits.empty() && patches_.splits[split].first_half != SplitNode::kNone) {
-      const std::uint32_t half = patches_.splits[split].first_half;
+    if (!patches_.splits.empty() && patches_.splits[split].first_part != SplitNode::kNone) {
+      const std::uint32_t half = patches_.splits[split].first_part;
       const double first = add_surface(half, node);
       return close(node, first + add_surface(half + 1, node));
     }

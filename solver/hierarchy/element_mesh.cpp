@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
 
 #include "solver/hierarchy/leaves_behind.h"
 
@@ -18,161 +22,322 @@ struct EdgeKey {
   friend auto operator<=>(const EdgeKey&, const EdgeKey&) = default;
 };
 
-EdgeKey edge_key(const std::vector<Vec3>& vertices, std::uint32_t a, std::uint32_t b) {
-  const auto [low, high] = std::minmax(a, b);
-  const Vec3 d = vertices[high] - vertices[low];
-  return {dot(d, d), low, high};
+struct KernelTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+  VertexAttributes(OpenMesh::Attributes::None);
+  HalfedgeAttributes(OpenMesh::Attributes::None);
+  EdgeAttributes(OpenMesh::Attributes::None);
+  FaceAttributes(OpenMesh::Attributes::None);
+  VertexTraits {
+    std::uint32_t vertex = 0;  ///< of the patches, then middles; several where surfaces meet in one place
+  };
+  HalfedgeTraits {
+    std::uint32_t point = 0;  ///< of the lightmap, where it starts
+  };
+  FaceTraits { std::uint32_t element = 0; };
+};
+using Kernel = OpenMesh::TriMesh_ArrayKernelT<KernelTraits>;
+using HalfEdge = Kernel::HalfedgeHandle;
+using Vertex = Kernel::VertexHandle;
+using Face = Kernel::FaceHandle;
+
+Vec3 position(const Kernel& kernel, Vertex v) {
+  const auto& x = kernel.point(v);
+  return {x[0], x[1], x[2]};
+}
+
+/// Corner k of patch p is 3 p + k.
+using Corner = std::uint32_t;
+Corner following(Corner c) { return c % 3 == 2 ? c - 2 : c + 1; }
+Corner previous(Corner c) { return c % 3 == 0 ? c + 2 : c - 1; }
+
+/// Corner by corner the vertices of the patches, counter-clockwise from their lit sides.
+std::vector<std::uint32_t> vertices_at_corners(const PatchSet& patches) {
+  std::vector<std::uint32_t> at;
+  at.reserve(3 * patches.patch_count());
+  for (std::size_t p = 0; p < patches.patch_count(); ++p) {
+    const auto& c = patches.corners[patches.triangle[p]];
+    const bool front = patches.side[p] == kFront;
+    for (const std::size_t k : {std::size_t{0}, front ? std::size_t{1} : 2, front ? std::size_t{2} : 1})
+      at.push_back(c[k].value);
+  }
+  return at;
+}
+
+/// The corner where the edge across from the one that starts at each corner starts; kNone at an open end. Both patches
+/// must agree that they meet, or halving would wait for one that never comes.
+std::vector<Corner> corners_across(const VertexLightmap& map, const std::vector<std::uint32_t>& vertex) {
+  std::vector<Corner> across(vertex.size(), kNone);
+  for (Corner c = 0; c < vertex.size(); ++c) {
+    const std::uint32_t q = map.neighbour[c / 3][c % 3];
+    if (q == kNone) continue;
+    for (Corner d = 3 * q; d < 3 * q + 3; ++d)
+      if (vertex[d] == vertex[following(c)] && vertex[following(d)] == vertex[c]) {
+        if (map.neighbour[q][d % 3] == c / 3) across[c] = d;
+        break;
+      }
+  }
+  for (Corner c = 0; c < across.size(); ++c)
+    if (across[c] != kNone && across[across[c]] != c) across[c] = kNone;
+  return across;
+}
+
+/// Puts the open ends in a row around each hole: what enters a vertex is followed by what leaves it.
+void close_boundary_loops(Kernel& kernel) {
+  std::vector<HalfEdge> leaves(kernel.n_vertices());
+  for (const HalfEdge h : kernel.halfedges())
+    if (kernel.is_boundary(h)) leaves[static_cast<std::size_t>(kernel.from_vertex_handle(h).idx())] = h;
+  for (const HalfEdge h : kernel.halfedges()) {
+    if (!kernel.is_boundary(h)) continue;
+    const HalfEdge next = leaves[static_cast<std::size_t>(kernel.to_vertex_handle(h).idx())];
+    kernel.set_next_halfedge_handle(h, next);
+    kernel.set_halfedge_handle(kernel.to_vertex_handle(h), next);
+  }
+}
+
+/// A face for each patch, neighbours joined over their edges. Where several rings of patches meet in one place each
+/// has a vertex of its own, so that what is not manifold in space is so here. Not by add_face(), which refuses a wall
+/// one element long, as both of its ends are the same edge.
+Kernel half_edges_of(const PatchSet& patches, const VertexLightmap& map) {
+  const std::vector<std::uint32_t> vertex = vertices_at_corners(patches);
+  const std::vector<Corner> across = corners_across(map, vertex);
+  const auto corners = static_cast<Corner>(vertex.size());
+  Kernel kernel;
+  std::vector<Vertex> at(corners);
+  for (Corner c = 0; c < corners; ++c) {
+    if (at[c].is_valid()) continue;
+    const Vec3& x = patches.vertices[vertex[c]];
+    const Vertex v = kernel.add_vertex({x.x, x.y, x.z});
+    kernel.data(v).vertex = vertex[c];
+    for (Corner d = c; d != kNone && !at[d].is_valid();) {
+      at[d] = v;
+      d = across[d] == kNone ? kNone : following(across[d]);
+    }
+    for (Corner d = across[previous(c)]; d != kNone && !at[d].is_valid(); d = across[previous(d)]) at[d] = v;
+  }
+  std::vector<HalfEdge> edge(corners);
+  for (Corner c = 0; c < corners; ++c) {
+    if (edge[c].is_valid()) continue;
+    edge[c] = kernel.new_edge(at[c], at[following(c)]);
+    if (across[c] != kNone) edge[across[c]] = kernel.opposite_halfedge_handle(edge[c]);
+  }
+  for (Corner first = 0; first < corners; first += 3) {
+    const Face face = kernel.new_face();
+    kernel.data(face).element = first / 3;
+    kernel.set_halfedge_handle(face, edge[first]);
+    for (Corner c = first; c < first + 3; ++c) {
+      kernel.set_face_handle(edge[c], face);
+      kernel.set_next_halfedge_handle(edge[c], edge[following(c)]);
+      kernel.set_halfedge_handle(at[c], edge[c]);
+      kernel.data(edge[c]).point = map.corners[c / 3][c % 3];
+    }
+  }
+  close_boundary_loops(kernel);
+  return kernel;
 }
 
 }  // namespace
 
+struct ElementMesh::HalfEdges {
+  Kernel kernel;
+  std::size_t vertices;  ///< of the patches and middles
+
+  /// The half-edge that starts at corner k of a leaf; faces keep that of their longest edge.
+  HalfEdge at_corner(const Element& leaf, std::size_t k) const {
+    const HalfEdge longest = kernel.halfedge_handle(face_of(leaf));
+    if (k == leaf.edge) return longest;
+    const HalfEdge next = kernel.next_halfedge_handle(longest);
+    return k == (leaf.edge + 1u) % 3 ? next : kernel.next_halfedge_handle(next);
+  }
+  static Face face_of(const Element& leaf) { return Face(static_cast<int>(leaf.first)); }
+
+  EdgeKey key(HalfEdge h) const {
+    const Vertex a = kernel.from_vertex_handle(h), b = kernel.to_vertex_handle(h);
+    const std::uint32_t from = kernel.data(a).vertex, to = kernel.data(b).vertex;
+    const Vec3 d = from < to ? position(kernel, b) - position(kernel, a) : position(kernel, a) - position(kernel, b);
+    return {dot(d, d), std::min(from, to), std::max(from, to)};
+  }
+  /// Makes the face of `corner0` that of a leaf.
+  void describe(Element& leaf, std::uint32_t number, HalfEdge corner0) {
+    const Face face = kernel.face_handle(corner0);
+    kernel.data(face).element = number;
+    leaf.first = static_cast<std::uint32_t>(face.idx());
+    leaf.edge = 0;
+    HalfEdge h = corner0, longest_one = corner0;
+    EdgeKey longest = key(h);
+    for (std::uint8_t k = 1; k < 3; ++k) {
+      h = kernel.next_halfedge_handle(h);
+      if (const EdgeKey here = key(h); here > longest) longest = here, leaf.edge = k, longest_one = h;
+    }
+    kernel.set_halfedge_handle(face, longest_one);
+  }
+  std::uint32_t element_at(HalfEdge h) const {
+    return kernel.is_boundary(h) ? kNone : kernel.data(kernel.face_handle(h)).element;
+  }
+};
+
 ElementMesh::ElementMesh(const PatchSet& patches, VertexLightmap map)
-    : patches_(patches),
-      vertices_(patches.vertices),
-      points_(std::move(map)),
-      first_middle_(points_.position.size()),
-      leaf_count_(patches.patch_count()) {
+    : patches_(patches), leaf_count_(patches.patch_count()) {
+  half_edges_ = std::make_unique<HalfEdges>(half_edges_of(patches, map), patches.vertices.size());
+  points_ = std::move(map);
+  points_.corners = {}, points_.neighbour = {}, points_.E = {};
+  first_middle_ = points_.position.size();
   elements_.resize(patches.patch_count());
   for (std::uint32_t p = 0; p < elements_.size(); ++p) {
-    Element& e = elements_[p];
-    const auto& c = patches.corners[patches.triangle[p]];
-    const bool front = patches.side[p] == kFront;
-    e.vertex = {c[0].value, c[front ? 1 : 2].value, c[front ? 2 : 1].value};
-    e.point = points_.corners[p];
-    e.neighbour = points_.neighbour[p];
-    e.patch = p;
-    find_longest_edge(e);
+    elements_[p].area = patches.area[p], elements_[p].patch = p;
+    half_edges_->describe(elements_[p], p, half_edges_->kernel.halfedge_handle(Face(static_cast<int>(p))));
   }
-  points_.corners = {}, points_.neighbour = {}, points_.E = {};
-  // Both must agree that they meet, or halving would wait for one that never comes.
-  std::vector<std::pair<std::uint32_t, std::size_t>> alone;
-  for (std::uint32_t p = 0; p < elements_.size(); ++p)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t q = elements_[p].neighbour[k];
-      if (q == kNone) continue;
-      const std::size_t back = edge_towards(q, elements_[p].vertex[(k + 1) % 3], elements_[p].vertex[k]);
-      if (back == 3 || elements_[q].neighbour[back] != p) alone.emplace_back(p, k);
-    }
-  for (const auto& [p, k] : alone) elements_[p].neighbour[k] = kNone;
+}
+ElementMesh::~ElementMesh() = default;
+ElementMesh::ElementMesh(ElementMesh&&) noexcept = default;
+
+namespace {
+
+/// Corners of a parted element from those of its parts.
+ElementMesh::Corners corners_of_whole(std::size_t edge, const ElementMesh::Corners& first,
+                                      const ElementMesh::Corners& second) {
+  ElementMesh::Corners whole;
+  whole[edge] = first[0], whole[(edge + 1) % 3] = second[1], whole[(edge + 2) % 3] = first[2];
+  return whole;
 }
 
-std::array<Vec3, 3> ElementMesh::corner_positions(std::size_t e) const {
-  const auto& v = elements_[e].vertex;
-  return {vertices_[v[0]], vertices_[v[1]], vertices_[v[2]]};
-}
+}  // namespace
 
-double ElementMesh::edge_length(std::size_t e, std::size_t k) const {
-  const auto& v = elements_[e].vertex;
-  return length(vertices_[v[(k + 1) % 3]] - vertices_[v[k]]);
-}
-
-void ElementMesh::find_longest_edge(Element& e) const {
-  EdgeKey longest = edge_key(vertices_, e.vertex[0], e.vertex[1]);
-  e.edge = 0;
-  for (std::uint8_t k = 1; k < 3; ++k)
-    if (const EdgeKey key = edge_key(vertices_, e.vertex[k], e.vertex[(k + 1u) % 3]); key > longest)
-      longest = key, e.edge = k;
-}
-
-std::size_t ElementMesh::edge_towards(std::uint32_t element, std::uint32_t from, std::uint32_t to) const {
-  const auto& v = elements_[element].vertex;
+ElementMesh::Corners ElementMesh::vertices(std::uint32_t e) const {
+  const Element& element = elements_[e];
+  if (element.parted) return corners_of_whole(element.edge, vertices(element.first), vertices(element.first + 1));
+  const Kernel& kernel = half_edges_->kernel;
+  Corners out;
   for (std::size_t k = 0; k < 3; ++k)
-    if (v[k] == from && v[(k + 1) % 3] == to) return k;
-  return 3;
+    out[k] = kernel.data(kernel.from_vertex_handle(half_edges_->at_corner(element, k))).vertex;
+  return out;
+}
+
+ElementMesh::Corners ElementMesh::points_of(std::uint32_t e) const {
+  const Element& element = elements_[e];
+  if (element.parted) return corners_of_whole(element.edge, points_of(element.first), points_of(element.first + 1));
+  Corners out;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = half_edges_->kernel.data(half_edges_->at_corner(element, k)).point;
+  return out;
+}
+
+ElementMesh::Corners ElementMesh::neighbours(std::uint32_t leaf) const {
+  Corners out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = half_edges_->element_at(
+        half_edges_->kernel.opposite_halfedge_handle(half_edges_->at_corner(elements_[leaf], k)));
+  return out;
+}
+
+std::array<Vec3, 3> ElementMesh::corner_positions(std::uint32_t e) const {
+  const Corners point = points_of(e);
+  return {points_.position[point[0]], points_.position[point[1]], points_.position[point[2]]};
+}
+
+double ElementMesh::longest_edge(std::uint32_t leaf) const {
+  return std::sqrt(half_edges_->key(half_edges_->at_corner(elements_[leaf], elements_[leaf].edge)).length2);
 }
 
 void ElementMesh::split(std::span<const std::uint32_t> marked) {
+  const Kernel& kernel = half_edges_->kernel;
   std::vector<std::uint32_t> path;
   for (const std::uint32_t e : marked) {
     path.assign(1, e);
     while (!path.empty()) {
-      const std::uint32_t at = path.back();
-      const Element& here = elements_[at];
-      if (!here.is_leaf()) {  // halved on the way to another
+      const Element& here = elements_[path.back()];
+      if (here.parted) {  // halved on the way to another
         path.pop_back();
         continue;
       }
-      const std::uint32_t next = here.neighbour[here.edge];
-      const bool waits = next != kNone && edge_towards(next, here.vertex[(here.edge + 1u) % 3],
-                                                       here.vertex[here.edge]) != elements_[next].edge;
+      const HalfEdge back = kernel.opposite_halfedge_handle(half_edges_->at_corner(here, here.edge));
+      const bool waits = !kernel.is_boundary(back) && kernel.halfedge_handle(kernel.face_handle(back)) != back;
       if (waits) {
-        path.push_back(next);
+        path.push_back(half_edges_->element_at(back));
       } else {
-        halve_with_neighbour(at);
+        part_with_neighbour(path.back(), here.edge, 0.5f);
         path.pop_back();
       }
     }
   }
 }
 
-void ElementMesh::halve_with_neighbour(std::uint32_t element) {
-  const Element e = elements_[element];
-  const std::size_t k = e.edge, next = (k + 1) % 3;
-  const std::uint32_t other = e.neighbour[k];
-  const Vec3 middle = (vertices_[e.vertex[k]] + vertices_[e.vertex[next]]) / 2;
-  const auto vertex = static_cast<std::uint32_t>(vertices_.size());
-  vertices_.push_back(middle);
-  if (other == kNone) {
-    halve(element, vertex, add_point(element, kNone, middle));
-    return;
-  }
-  const Element q = elements_[other];
-  const bool smooth = q.point[q.edge] == e.point[next] && q.point[(q.edge + 1u) % 3] == e.point[k];
-  const std::uint32_t point = add_point(element, smooth ? other : kNone, middle);
-  const std::uint32_t point_there = smooth ? point : add_point(other, kNone, middle);
-  halve(element, vertex, point);
-  halve(other, vertex, point_there);
-  const std::uint32_t a = elements_[element].first_half, b = elements_[other].first_half;
-  // The neighbour's edge runs the other way: its second half lies at our first.
-  elements_[a].neighbour[0] = b + 1, elements_[b + 1].neighbour[0] = a;
-  elements_[a + 1].neighbour[0] = b, elements_[b].neighbour[0] = a + 1;
-}
+/// A leaf about to be parted at an edge.
+struct ElementMesh::Parting {
+  std::uint32_t element;
+  Corners point;  ///< where the edge starts, where it ends, at the apex
+  Vec3 apex;
+};
 
-/// The halves' neighbours across the halved edge are left to the caller.
-void ElementMesh::halve(std::uint32_t element, std::uint32_t vertex, std::uint32_t point) {
-  const Element e = elements_[element];
-  const std::size_t start = e.edge, end = (start + 1) % 3, apex = (start + 2) % 3;
-  const auto first = static_cast<std::uint32_t>(elements_.size()), second = first + 1;
-  Element half = e;
-  half.level = static_cast<std::uint8_t>(e.level + 1);
-  half.vertex = {e.vertex[start], vertex, e.vertex[apex]};
-  half.point = {e.point[start], point, e.point[apex]};
-  half.neighbour = {kNone, second, e.neighbour[apex]};
-  find_longest_edge(half);
-  elements_.push_back(half);
-  half.vertex = {vertex, e.vertex[end], e.vertex[apex]};
-  half.point = {point, e.point[end], e.point[apex]};
-  half.neighbour = {kNone, e.neighbour[end], first};
-  find_longest_edge(half);
-  elements_.push_back(half);
-  elements_[element].first_half = first;
-  ++leaf_count_;
-  const auto now_meets = [&](std::uint32_t neighbour, std::size_t edge, std::uint32_t whom) {
-    if (neighbour == kNone) return;
-    const std::size_t k = edge_towards(neighbour, e.vertex[(edge + 1) % 3], e.vertex[edge]);
-    if (k < 3) elements_[neighbour].neighbour[k] = whom;
+void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, float at) {
+  Kernel& kernel = half_edges_->kernel;
+  const auto parting = [&](HalfEdge h) {
+    const HalfEdge to_apex = kernel.next_halfedge_handle(h), from_apex = kernel.next_halfedge_handle(to_apex);
+    return Parting{half_edges_->element_at(h),
+                   {kernel.data(h).point, kernel.data(to_apex).point, kernel.data(from_apex).point},
+                   position(kernel, kernel.from_vertex_handle(from_apex))};
   };
-  now_meets(e.neighbour[apex], apex, first);
-  now_meets(e.neighbour[end], end, second);
+  const HalfEdge h = half_edges_->at_corner(elements_[element], edge), back = kernel.opposite_halfedge_handle(h);
+  const Vertex start = kernel.from_vertex_handle(h), end = kernel.to_vertex_handle(h);
+  const Vec3 place = position(kernel, start) * (1 - double{at}) + position(kernel, end) * double{at};
+  const bool alone = kernel.is_boundary(back);
+  const Parting here = parting(h), there = alone ? Parting{} : parting(back);
+  const std::size_t edge_there = alone ? 0 : [&] {
+    std::size_t k = 0;
+    while (half_edges_->at_corner(elements_[there.element], k) != back) ++k;
+    return k;
+  }();
+  const bool smooth = !alone && there.point[0] == here.point[1] && there.point[1] == here.point[0];
+  const std::uint32_t point = add_point(here, smooth ? &there : nullptr, place);
+  const std::uint32_t point_there = alone || smooth ? point : add_point(there, nullptr, place);
+
+  const Vertex middle = kernel.add_vertex({place.x, place.y, place.z});
+  kernel.data(middle).vertex = static_cast<std::uint32_t>(half_edges_->vertices++);
+  kernel.split(kernel.edge_handle(h), middle);
+  const HalfEdge to_end = kernel.find_halfedge(middle, end), to_start = kernel.find_halfedge(middle, start);
+
+  /// Both parts, from the half-edges on either side of the middle; OpenMesh knows nothing of what they carry.
+  const auto part = [&](const Parting& was, std::size_t edge_was, float share, std::uint32_t middle_point,
+                        HalfEdge first, HalfEdge second) {
+    Element& whole = elements_[was.element];
+    Element half = whole;
+    half.level = static_cast<std::uint8_t>(whole.level + 1);
+    whole.parted = true, whole.at = share, whole.edge = static_cast<std::uint8_t>(edge_was);
+    whole.first = static_cast<std::uint32_t>(elements_.size());
+    const double area = whole.area;
+    const auto add = [&](HalfEdge corner0, const Corners& points, double part_of_area) {
+      HalfEdge at_corner = corner0;
+      for (const std::uint32_t p : points)
+        kernel.data(at_corner).point = p, at_corner = kernel.next_halfedge_handle(at_corner);
+      half.area = part_of_area;
+      half_edges_->describe(half, static_cast<std::uint32_t>(elements_.size()), corner0);
+      elements_.push_back(half);
+    };
+    add(first, {was.point[0], middle_point, was.point[2]}, area * double{share});
+    add(second, {middle_point, was.point[1], was.point[2]}, area * (1 - double{share}));
+    ++leaf_count_;
+  };
+  part(here, edge, at, point, kernel.opposite_halfedge_handle(to_start), to_end);
+  // The neighbour's edge runs the other way.
+  if (!alone) part(there, edge_there, 1 - at, point_there, kernel.opposite_halfedge_handle(to_end), to_start);
 }
 
-std::uint32_t ElementMesh::add_point(std::uint32_t element, std::uint32_t other, const Vec3& middle) {
+std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, const Vec3& place) {
   constexpr double kAlike = 0.99;  // as for the lightmap's own points
   constexpr double kWayToCentroid = 2e-3;
-  const Element& e = elements_[element];
   const auto point = static_cast<std::uint32_t>(points_.position.size());
-  points_.position.push_back(middle);
-  points_.patch_of_point.push_back(e.patch);
-  ends_.push_back({e.point[e.edge], e.point[(e.edge + 1u) % 3]});
-  const auto sample = [&](const Element& facet, double weight) {
-    const Vec3 to_centroid = (vertices_[facet.vertex[(facet.edge + 2u) % 3]] - middle) / 3;
-    points_.sample_position.push_back(middle + to_centroid * kWayToCentroid);
-    points_.sample_normal.push_back(patches_.normal[facet.patch]);
+  const std::uint32_t patch = elements_[here.element].patch;
+  points_.position.push_back(place);
+  points_.patch_of_point.push_back(patch);
+  ends_.push_back({here.point[0], here.point[1]});
+  const auto sample = [&](const Parting& facet, double weight) {
+    const Vec3 to_centroid = (facet.apex - place) / 3;
+    points_.sample_position.push_back(place + to_centroid * kWayToCentroid);
+    points_.sample_normal.push_back(patches_.normal[elements_[facet.element].patch]);
     points_.sample_weight.push_back(weight);
   };
-  const bool bent = other != kNone && dot(patches_.normal[e.patch], patches_.normal[elements_[other].patch]) < kAlike;
-  sample(e, bent ? 0.5 : 1);
-  if (bent) sample(elements_[other], 0.5);
+  const bool bent = other && dot(patches_.normal[patch], patches_.normal[elements_[other->element].patch]) < kAlike;
+  sample(here, bent ? 0.5 : 1);
+  if (bent) sample(*other, 0.5);
   points_.sample_begin.push_back(static_cast<std::uint32_t>(points_.sample_position.size()));
   return point;
 }
@@ -188,8 +353,8 @@ std::vector<std::uint32_t> ElementMesh::leaves() const {
       if (elements_[e].is_leaf()) {
         leaves.push_back(e);
       } else {
-        stack.push_back(elements_[e].first_half + 1);
-        stack.push_back(elements_[e].first_half);
+        stack.push_back(elements_[e].first + 1);
+        stack.push_back(elements_[e].first);
       }
     }
   }
@@ -197,7 +362,7 @@ std::vector<std::uint32_t> ElementMesh::leaves() const {
 }
 
 std::size_t ElementMesh::leaves_under(std::uint32_t e) const {
-  const std::uint32_t first = elements_[e].first_half;
+  const std::uint32_t first = elements_[e].first;
   return elements_[e].is_leaf() ? 1 : leaves_under(first) + leaves_under(first + 1);
 }
 
@@ -207,13 +372,16 @@ PatchSet ElementMesh::leaf_patches() const {
   PatchSet out;
   out.origin = patches_.origin;
   out.channels = patches_.channels;
-  out.vertices = vertices_;
+  out.vertices = patches_.vertices;
+  out.vertices.resize(half_edges_->vertices);
+  for (const Vertex v : half_edges_->kernel.vertices())
+    out.vertices[half_edges_->kernel.data(v).vertex] = position(half_edges_->kernel, v);
   out.materials = patches_.materials;
   out.surfaces = patches_.surfaces;
   out.side_patch = patches_.side_patch;
   out.splits.resize(elements_.size());
   for (std::size_t e = 0; e < elements_.size(); ++e)
-    out.splits[e] = {elements_[e].first_half, SplitNode::kNone, elements_[e].edge};
+    if (elements_[e].parted) out.splits[e] = {elements_[e].first, SplitNode::kNone, elements_[e].at, elements_[e].edge};
   out.corners.resize(n), out.side_material.resize(n), out.side_surface.resize(n);
   out.triangle.resize(n), out.side.resize(n), out.area.resize(n), out.normal.resize(n);
   out.level.resize(n);
@@ -221,18 +389,19 @@ PatchSet ElementMesh::leaf_patches() const {
   out.rho = out.M = Field(n, patches_.channels);
   for (std::size_t i = 0; i < n; ++i) {
     const Element& e = elements_[leaf[i]];
+    const Corners vertex = vertices(leaf[i]);
     const TriangleId t = patches_.triangle[e.patch];
     const Side side = patches_.side[e.patch];
     const bool front = side == kFront;
     out.splits[leaf[i]].patch = static_cast<std::uint32_t>(i);
-    out.corners[i] = {VertexId{std::size_t{e.vertex[0]}}, VertexId{std::size_t{e.vertex[front ? 1 : 2]}},
-                      VertexId{std::size_t{e.vertex[front ? 2 : 1]}}};
+    out.corners[i] = {VertexId{std::size_t{vertex[0]}}, VertexId{std::size_t{vertex[front ? 1 : 2]}},
+                      VertexId{std::size_t{vertex[front ? 2 : 1]}}};
     out.side_material[i] = patches_.side_material[t];
     out.side_surface[i] = patches_.side_surface[t];
     if (!out.joined.empty()) out.joined[i] = patches_.joined[t];
     out.triangle[i] = TriangleId{i};
     out.side[i] = side;
-    out.area[i] = std::ldexp(patches_.area[e.patch], -e.level);  // halves are halves
+    out.area[i] = e.area;
     out.normal[i] = patches_.normal[e.patch];
     out.level[i] = e.level;
     out.rho.set(i, patches_.rho[e.patch]);
@@ -252,15 +421,21 @@ VertexLightmap ElementMesh::leaf_lightmap() && {
   map.corners.resize(leaf.size());
   map.neighbour.resize(leaf.size());
   for (std::uint32_t i = 0; i < leaf.size(); ++i) {
-    const Element& e = elements_[leaf[i]];
-    map.corners[i] = e.point;
+    map.corners[i] = points_of(leaf[i]);
+    const Corners neighbour = neighbours(leaf[i]);
     for (std::size_t k = 0; k < 3; ++k) {
-      map.neighbour[i][k] = e.neighbour[k] == kNone ? kNone : number[e.neighbour[k]];
-      map.patch_of_point[e.point[k]] = i;
+      map.neighbour[i][k] = neighbour[k] == kNone ? kNone : number[neighbour[k]];
+      map.patch_of_point[map.corners[i][k]] = i;
     }
   }
   map.E = Field(map.position.size(), patches_.channels);
   return map;
+}
+
+bool ElementMesh::is_sound() const {
+  std::ostringstream what;
+  return OpenMesh::Utils::MeshCheckerT<Kernel>(half_edges_->kernel)
+      .check(OpenMesh::Utils::MeshCheckerT<Kernel>::CHECK_ALL, what);
 }
 
 }  // namespace clerestory

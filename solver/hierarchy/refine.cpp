@@ -160,7 +160,7 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
       for (std::size_t k = begin; k < end && !monitor.should_stop(); ++k) {
         const std::uint32_t e = candidates[k];
         const PatchId p{std::size_t{mesh[e].patch}};
-        const double edge = mesh.edge_length(e, mesh[e].edge);
+        const double edge = mesh.longest_edge(e);
         const auto corners = mesh.corner_positions(e);
         const double weight = luminous_mean(patches.albedo(p)) * triangle_area(corners) / A0;
         // Little varies by more than twice its mean between four parts.

@@ -24,9 +24,8 @@ std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
   if (points <= most) return std::vector<bool>(points, true);
   std::vector<float> largest(points, 0);
   for (const std::uint32_t leaf : mesh.leaves())
-    for (const std::uint32_t p : mesh[leaf].point)
-      largest[p] = std::max(largest[p],
-                            static_cast<float>(std::ldexp(mesh.patches().area[mesh[leaf].patch], -mesh[leaf].level)));
+    for (const std::uint32_t p : mesh.points_of(leaf))
+      largest[p] = std::max(largest[p], static_cast<float>(mesh[leaf].area));
   std::vector<float> sorted = largest;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(most), sorted.end(), std::greater<>());
   std::vector<bool> worth(points);
@@ -104,15 +103,15 @@ std::vector<Vec3> gradients(const ElementMesh& mesh, const std::vector<std::uint
   std::vector<Vec3> gradient(E.size());
   std::vector<double> weight(E.size());
   for (const std::uint32_t leaf : leaves) {
-    const auto& e = mesh[leaf];
+    const auto point = mesh.points_of(leaf);
     const auto x = mesh.corner_positions(leaf);
     const Vec3 n = cross(x[1] - x[0], x[2] - x[0]);
     const double twice_area = length(n);
     if (!(twice_area > 0)) continue;
     Vec3 g;
-    for (std::size_t k = 0; k < 3; ++k) g += cross(n, x[(k + 2) % 3] - x[(k + 1) % 3]) * E[e.point[k]];
+    for (std::size_t k = 0; k < 3; ++k) g += cross(n, x[(k + 2) % 3] - x[(k + 1) % 3]) * E[point[k]];
     // g is the gradient times the square of 2 A; weighted by area, 2 A is left.
-    for (const std::uint32_t p : e.point) gradient[p] += g / twice_area, weight[p] += twice_area;
+    for (const std::uint32_t p : point) gradient[p] += g / twice_area, weight[p] += twice_area;
   }
   for (std::size_t p = 0; p < gradient.size(); ++p)
     if (weight[p] > 0) gradient[p] = gradient[p] / weight[p];
@@ -135,7 +134,7 @@ struct Candidate {
 std::vector<std::uint32_t> known_leaves(const ElementMesh& mesh, const std::vector<bool>& known) {
   std::vector<std::uint32_t> leaves = mesh.leaves();
   std::erase_if(leaves, [&](std::uint32_t leaf) {
-    const auto& point = mesh[leaf].point;
+    const auto point = mesh.points_of(leaf);
     return !known[point[0]] || !known[point[1]] || !known[point[2]];
   });
   return leaves;
@@ -145,7 +144,7 @@ std::vector<std::uint32_t> known_leaves(const ElementMesh& mesh, const std::vect
 std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options) {
   std::vector<Candidate> worst;
   for (const auto& [leaf, off, E, std_error] : leaf_errors(mesh, field)) {
-    if (!(mesh.edge_length(leaf, mesh[leaf].edge) > options.shortest_edge)) continue;
+    if (!(mesh.longest_edge(leaf) > options.shortest_edge)) continue;
     if (off > std::max(options.tolerance * E, std_error)) worst.push_back({off / E, leaf});
   }
   std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
@@ -165,16 +164,14 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
   };
   double flux = 0, area = 0;
   for (const std::uint32_t leaf : leaves) {
-    const auto& e = mesh[leaf];
-    const double a = std::ldexp(mesh.patches().area[e.patch], -e.level);
-    flux += a * mean(e.point, E);
-    area += a;
+    flux += mesh[leaf].area * mean(mesh.points_of(leaf), E);
+    area += mesh[leaf].area;
   }
   const double dark = area > 0 ? kDark * flux / area : 0;
   const std::vector<Vec3> gradient = gradients(mesh, leaves, E);
   std::vector<LeafError> errors;
   for (const std::uint32_t leaf : leaves) {
-    const auto& point = mesh[leaf].point;
+    const auto point = mesh.points_of(leaf);
     const auto x = mesh.corner_positions(leaf);
     double off = 0;
     for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, gradient, k)));
@@ -220,7 +217,7 @@ Field leaf_irradiance(const ElementMesh& mesh, const Field& E) {
     for (std::size_t p = 0; p < value.size(); ++p) value[p] = E.at(p, c);
     const std::vector<Vec3> gradient = gradients(mesh, leaves, value);
     for (std::size_t i = 0; i < leaves.size(); ++i) {
-      const auto& point = mesh[leaves[i]].point;
+      const auto point = mesh.points_of(leaves[i]);
       const auto x = mesh.corner_positions(leaves[i]);
       const double corners = (value[point[0]] + value[point[1]] + value[point[2]]) / 3;
       double off = 0;

@@ -163,7 +163,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
                               {kStakeByTolerance * options.tolerance * first_flux, options.seed}, monitor);
     for (const std::uint32_t p : links.to_halve) {
       const std::uint32_t e = round.element[p];
-      if (mesh.edge_length(e, mesh[e].edge) >= 2 * options.shortest_edge) round.to_halve.push_back(e);
+      if (mesh.longest_edge(e) >= 2 * options.shortest_edge) round.to_halve.push_back(e);
     }
     transport = std::move(links.transport);
   }

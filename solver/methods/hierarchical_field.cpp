@@ -21,8 +21,8 @@ DeltaLight delta_light(const ElementMesh& mesh, std::span<const std::uint32_t> l
   DeltaLight found;
   double low = std::numeric_limits<double>::infinity(), high = 0, share = 0;
   for (const std::uint32_t leaf : leaves) {
-    const double part = std::ldexp(1.0, -mesh[leaf].level);
-    for (const std::uint32_t p : mesh[leaf].point) {
+    const double part = mesh[leaf].area / mesh.patches().area[mesh[leaf].patch];
+    for (const std::uint32_t p : mesh.points_of(leaf)) {
       if (!field.known[p]) return {};
       const Spectrum luminaires = field.delta_light[p];
       found.mean += luminaires * (part / 3);
@@ -56,7 +56,7 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
     for (std::size_t k = 0; k < own.size() && gathered.varies; ++k)
       for (int c = 0; c < E.channels; ++c) {
         double luminaires = 0;
-        for (const std::uint32_t p : mesh[own[k]].point) luminaires += field.delta_light.at(p, c) / 3;
+        for (const std::uint32_t p : mesh.points_of(own[k])) luminaires += field.delta_light.at(p, c) / 3;
         // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
         const double exact = coarse.delta_light.at(j, c), mean = gathered.mean[c];
         E.at(begin + k, c) = rest.at(begin + k, c) + (mean > 0 ? luminaires * exact / mean : exact);
@@ -80,8 +80,7 @@ void correct_flux(const HierarchicalSolution& coarse, const Field& E, const Elem
     double found = 0, exact = 0;
     for (std::size_t j = 0; j < coarse.elements.patch_count(); ++j)
       exact += coarse.elements.area[j] * (E.at(j, c) - coarse.delta_light.at(j, c));
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-      found += std::ldexp(mesh.patches().area[mesh[leaves[i]].patch], -mesh[leaves[i]].level) * on_leaves.at(i, c);
+    for (std::size_t i = 0; i < leaves.size(); ++i) found += mesh[leaves[i]].area * on_leaves.at(i, c);
     const double ratio = found > 0 ? exact / found : 1;
     if (std::abs(ratio - 1) > kMost) continue;
     for (std::size_t p = 0; p < rest.size(); ++p) field.E.at(p, c) = field.delta_light.at(p, c) + ratio * rest.at(p, c);
@@ -93,7 +92,7 @@ void fill_unknown(const ElementMesh& mesh, const std::vector<std::uint32_t>& tra
                   const Field& E, VertexField& field) {
   std::vector<double> area(field.E.size(), 0.0);
   for (std::size_t j = 0; j < transport_leaves.size(); ++j)
-    for (const std::uint32_t p : mesh[transport_leaves[j]].point) {
+    for (const std::uint32_t p : mesh.points_of(transport_leaves[j])) {
       if (field.known[p]) continue;
       field.E.set(p, (field.E[p] * area[p] + E[j] * elements.area[j]) / (area[p] + elements.area[j]));
       area[p] += elements.area[j];

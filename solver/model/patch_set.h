@@ -17,12 +17,13 @@ namespace clerestory {
 /// Front is the side from which the corners run counter-clockwise.
 enum Side : std::uint8_t { kFront = 0, kBack = 1 };
 
-/// A node of the binary trees that halve patches. The halved edge runs from corner `edge` to the next one; half 0 keeps
-/// its start and gets the corners (start, middle, apex), half 1 its end: (middle, end, apex).
+/// A node of the binary trees that part patches. The parted edge runs from corner `edge` to the next one; part 0 keeps
+/// its start and gets the corners (start, middle, apex), part 1 its end: (middle, end, apex).
 struct SplitNode {
   static constexpr std::uint32_t kNone = 0xffffffff;
-  std::uint32_t first_half = kNone;  ///< node of half 0, half 1 follows it; kNone: not halved
-  std::uint32_t patch = kNone;       ///< PatchId, when it is not halved
+  std::uint32_t first_part = kNone;  ///< node of part 0, part 1 follows it; kNone: not parted
+  std::uint32_t patch = kNone;       ///< PatchId, when it is not parted
+  float at = 0.5f;                   ///< share of the edge before its middle, in (0, 1)
   std::uint8_t edge = 0;
 };
 

@@ -48,7 +48,7 @@ TEST(BuildTree, HalvesStandBelowTheirPatch) {
   ElementMesh mesh(patches, map);
   const std::vector<std::uint32_t> some{3, 7, 8};
   mesh.split(some);
-  const std::vector<std::uint32_t> again{mesh[3].first_half};
+  const std::vector<std::uint32_t> again{mesh[3].first};
   mesh.split(again);
   const PatchSet leaves = mesh.leaf_patches();
   const ElementTree tree = build_tree(leaves, leaves.M);

@@ -61,6 +61,14 @@ TEST_F(GradedRoom, HasNoTVertices) {
     }
 }
 
+TEST(ElementMesh, IsSoundForOpenMeshsOwnChecker) {
+  const MeshedRoom room(testing::room_with_box(), 0.6);
+  ElementMesh mesh(room.patches, room.map);
+  EXPECT_TRUE(mesh.is_sound());
+  halve_around(mesh, Vec3{1, 1, 0} - room.patches.origin, 5);
+  EXPECT_TRUE(mesh.is_sound());
+}
+
 TEST_F(GradedRoom, KeepsAreaAnglesAndOrientation) {
   EXPECT_NEAR(leaves.total_area(), room.patches.total_area(), 1e-9);
   double before = 4, after = 4;

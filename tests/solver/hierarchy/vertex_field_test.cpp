@@ -31,7 +31,7 @@ TEST(GatherField, HalvesWhereShadowsAreAndNotWhereLightIsEven) {
     const Vec3 c = (x[0] + x[1] + x[2]) / 3 + room.patches.origin;
     if (c.z > 1e-6) continue;  // the floor
     const double from_box = std::max({1 - c.x, c.x - 1.6, 1 - c.y, c.y - 1.7});
-    const double longest = mesh.edge_length(leaf, mesh[leaf].edge);
+    const double longest = mesh.longest_edge(leaf);
     if (from_box > 0 && from_box < 0.2) near_box += longest, ++near_count;
     if (c.x > 3) far += longest, ++far_count;
   }
@@ -56,14 +56,14 @@ TEST(GatherField, ATighterToleranceInterpolatesBetter) {
     const GatherPattern pattern(kFew, 1);
     double squares = 0, mean = 0, area = 0;
     for (const std::uint32_t leaf : mesh.leaves()) {
-      const auto& e = mesh[leaf];
+      const auto point = mesh.points_of(leaf);
       const auto x = mesh.corner_positions(leaf);
-      const Vec3 n = room.patches.normal[e.patch];
+      const Vec3 n = room.patches.normal[mesh[leaf].patch];
       unsigned long long rays = 0;
       const double E =
           gather_point(light, (x[0] + x[1] + x[2]) / 3 + n * room.rays.lift(), n, pattern, GatherPlan{}, rays).E[0];
-      const double linear = (field.E[e.point[0]][0] + field.E[e.point[1]][0] + field.E[e.point[2]][0]) / 3;
-      const double a = std::ldexp(room.patches.area[e.patch], -e.level);
+      const double linear = (field.E[point[0]][0] + field.E[point[1]][0] + field.E[point[2]][0]) / 3;
+      const double a = mesh[leaf].area;
       squares += a * (linear - E) * (linear - E), mean += a * E, area += a;
     }
     const double error = std::sqrt(squares / area) / (mean / area);

@@ -97,7 +97,7 @@ Runs runs(const Room& room, HierarchyOptions options, int seeds = 6) {
     std::size_t k = 0;
     for (const std::uint32_t leaf : mesh.leaves()) {
       const auto& e = mesh[leaf];
-      E.at(e.patch, 0) += std::ldexp(h.solution.E[k][0], -e.level);
+      E.at(e.patch, 0) += h.solution.E[k][0] * e.area / patches.area[e.patch];
       direct += h.elements.area[k] * h.delta_light[k][0];
       if (h.delta_light[k++][0] > 0) out.in_the_dark[e.patch] = false;
     }

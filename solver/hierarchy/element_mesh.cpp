@@ -261,6 +261,12 @@ void ElementMesh::split(std::span<const std::uint32_t> marked) {
   }
 }
 
+void ElementMesh::cut(std::uint32_t leaf, std::size_t k, double at) {
+  // So that 1 - at is exact for the neighbour, whose edge runs the other way.
+  constexpr double kSteps = 1 << 20;
+  part_with_neighbour(leaf, k, static_cast<float>(std::clamp(std::round(at * kSteps), 1.0, kSteps - 1) / kSteps));
+}
+
 /// A leaf about to be parted at an edge.
 struct ElementMesh::Parting {
   std::uint32_t element;

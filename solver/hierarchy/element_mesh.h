@@ -35,6 +35,7 @@ class ElementMesh {
     std::uint8_t edge = 0;    ///< corner where the parted edge starts; of a leaf: its longest edge
     std::uint8_t level = 0;   ///< partings since the patch
     bool parted = false;
+    bool penumbra = false;  ///< lies across the edge of a shadow, with corners on both of its sides
     bool is_leaf() const { return !parted; }
   };
   std::size_t size() const { return elements_.size(); }
@@ -55,6 +56,11 @@ class ElementMesh {
 
   /// Halves each of the given elements that is still a leaf, and what conformity asks for.
   void split(std::span<const std::uint32_t> marked);
+
+  /// Parts a leaf at edge k, from corner k to the next, and the leaf across it: at the share `at` of the edge's length,
+  /// in (0, 1) and rounded to 2^-20 of it.
+  void cut(std::uint32_t leaf, std::size_t k, double at);
+  void mark_penumbra(std::uint32_t leaf) { elements_[leaf].penumbra = true; }
 
   /// All points: those of the lightmap, then middles in the order they were made, with their places for samples.
   const VertexLightmap& points() const { return points_; }

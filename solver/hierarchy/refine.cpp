@@ -159,6 +159,7 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
     parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end && !monitor.should_stop(); ++k) {
         const std::uint32_t e = candidates[k];
+        if (mesh[e].penumbra) continue;  // as it should be
         const PatchId p{std::size_t{mesh[e].patch}};
         const double edge = mesh.longest_edge(e);
         const auto corners = mesh.corner_positions(e);

@@ -103,6 +103,7 @@ std::vector<Vec3> gradients(const ElementMesh& mesh, const std::vector<std::uint
   std::vector<Vec3> gradient(E.size());
   std::vector<double> weight(E.size());
   for (const std::uint32_t leaf : leaves) {
+    if (mesh[leaf].penumbra) continue;  // a slope of its own, between sides that have others
     const auto point = mesh.points_of(leaf);
     const auto x = mesh.corner_positions(leaf);
     const Vec3 n = cross(x[1] - x[0], x[2] - x[0]);
@@ -176,7 +177,7 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
     double off = 0;
     for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, gradient, k)));
     const auto [low, high] = std::minmax({E[point[0]], E[point[1]], E[point[2]]});
-    off = std::max(off, kSteep * (high - low));
+    if (!mesh[leaf].penumbra) off = std::max(off, kSteep * (high - low));
     errors.push_back({leaf, off, std::max(mean(point, E), dark), mean(point, field.std_error)});
   }
   return errors;

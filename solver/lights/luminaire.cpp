@@ -83,6 +83,15 @@ Vec3 light_point(const Luminaire& luminaire, const Vec3& p, double u, double v) 
       luminaire.kind);
 }
 
+Vec3 rim_point(const Luminaire& luminaire, const Vec3& p, double around) {
+  return std::visit(
+      [&](const auto& kind) {
+        if constexpr (HasOpening<decltype(kind)>) return rim_point(kind, luminaire.position, p, around);
+        return luminaire.position;
+      },
+      luminaire.kind);
+}
+
 Spectrum open_irradiance(const Luminaire& luminaire, const Vec3& q, const Vec3& p, const Vec3& n) {
   const Vec3 to_luminaire = q - p;
   const double r2 = dot(to_luminaire, to_luminaire), r = std::sqrt(r2), cos_r = dot(n, to_luminaire);

@@ -2,7 +2,7 @@
 // What luminaires of any kind give at a point.
 //
 // A kind is a file here, NAME_luminaire.h, with four functions: intensity, power, bounds, turn_into_image; kinds whose
-// light comes out of an opening have five more (web_luminaire.h). Data: solver/model/light_spec.h.
+// light comes out of an opening have six more (web_luminaire.h). Data: solver/model/light_spec.h.
 
 #include "solver/lights/light_tree.h"
 #include "solver/lights/luminaire_opening.h"
@@ -28,6 +28,9 @@ int opening_rays(const Luminaire& luminaire, const Vec3& p);
 OpeningPlace opening_place(const Luminaire& luminaire, int k, int count);
 /// Where light for p comes from: the position, or near by the point of the opening that u and v in [0, 1) choose.
 Vec3 light_point(const Luminaire& luminaire, const Vec3& p, double u, double v);
+
+/// Where that place ends as p sees it: `around` in [0, 1) goes once around its rim.
+Vec3 rim_point(const Luminaire& luminaire, const Vec3& p, double around);
 
 /// Irradiance [W/m2] at point p with unit normal n from the luminaire's point q, when nothing blocks: I cos / r2. The
 /// mean over the points q of an opening is what it gives: each sends the luminaire's intensity, so the flux is the

@@ -120,6 +120,16 @@ Vec3 light_point(const WebLuminaire& luminaire, const Vec3& position, const Vec3
   return position + f.along_a * (f.a * a) + f.along_b * (f.b * b);
 }
 
+Vec3 rim_point(const WebLuminaire& luminaire, const Vec3& position, const Vec3& p, double around) {
+  constexpr double kRim = 1 - 1e-9;  // u and v end before 1
+  if (face(luminaire).round) return light_point(luminaire, position, p, kRim, around);
+  const double side = 4 * around, along = side - std::floor(side), back = kRim - along;
+  if (side < 1) return light_point(luminaire, position, p, along, 0);
+  if (side < 2) return light_point(luminaire, position, p, kRim, along);
+  if (side < 3) return light_point(luminaire, position, p, back, kRim);
+  return light_point(luminaire, position, p, 0, back);
+}
+
 double least_r2(const WebLuminaire& luminaire) {
   const Face f = face(luminaire);
   const double strip = std::max(f.a, f.b) / kSmallestShare;  // of an opening that is no more than a line

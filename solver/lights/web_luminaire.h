@@ -31,6 +31,9 @@ OpeningPlace opening_place(const WebLuminaire& luminaire, int k, int count);
 /// over the two larger of its three lengths.
 Vec3 light_point(const WebLuminaire& luminaire, const Vec3& position, const Vec3& p, double u, double v);
 
+/// Where the opening ends as p sees it: `around` in [0, 1) goes once around. The centre where light_point() is that.
+Vec3 rim_point(const WebLuminaire& luminaire, const Vec3& position, const Vec3& p, double around);
+
 /// r counts as no less than the radius of a disc of 1/256 of the opening: no point is dazzled by one [m2].
 double least_r2(const WebLuminaire& luminaire);
 

@@ -12,6 +12,7 @@
 #include "solver/hierarchy/build_tree.h"
 #include "solver/hierarchy/debug_view.h"
 #include "solver/hierarchy/refine.h"
+#include "solver/hierarchy/shadow_edges.h"
 #include "solver/hierarchy/trace_links.h"
 #include "solver/illumination/direct.h"
 #include "solver/methods/progressive.h"
@@ -236,7 +237,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   bool going = !monitor.should_stop();
   for (int number = 0; going && number < kMostRounds; ++number) {
     monitor.report("refine", static_cast<double>(number) / kMostRounds);
-    const std::size_t before = mesh.leaf_count();
+    std::size_t before = mesh.leaf_count();
     const std::string name = "round " + std::to_string(number);
     going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), monitor));
     if (!going) break;
@@ -248,6 +249,14 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     const Problem on_leaves{last->result.elements, problem.rays, problem.lights};
     const Field glow = above_ground(last->result.elements, last->result.solution.B, *last);
     monitor.report("refine", (number + 0.5) / kMostRounds);
+    if (number == 0) {  // straight edges need no halving
+      const ShadowEdges edges =
+          cut_shadow_edges(mesh, on_leaves, last->result.solution.E,
+                           {.shortest_edge = options.shortest_edge, .most_elements = options.most_elements}, monitor);
+      log.push_back(name + ": " + std::to_string(edges.cut) + " cut along edges of shadows, " +
+                    std::to_string(edges.halved) + " halved at them");
+      before = mesh.leaf_count();  // which direct light knows, without another round
+    }
     const RefineOptions how{options.tolerance, options.shortest_edge, options.most_elements, options.seed};
     const std::size_t halved = refine(mesh, Illumination(on_leaves, glow), last->result.solution.E,
                                       last->result.solution.B, how, rays, monitor);

@@ -1,0 +1,37 @@
+#pragma once
+// Elements cut along the edges of shadows.
+
+#include <cstddef>
+
+#include "solver/hierarchy/element_mesh.h"
+#include "solver/illumination/problem.h"
+#include "solver/model/monitor.h"
+
+namespace clerestory {
+
+struct ShadowEdgeOptions {
+  double contrast = 0.2;  ///< lights that give less of an element's irradiance than this share draw no edge there [1]
+  double shortest_edge = 0;  ///< elements are not halved below this [m]
+  std::size_t most_elements = 1'000'000;
+};
+
+/// What was done about them.
+struct ShadowEdges {
+  std::size_t cut = 0;     ///< elements that a straight edge goes through, and that were cut along it
+  std::size_t halved = 0;  ///< elements whose edge is crooked, or that are too long for it
+};
+
+/// Where the sun or a small luminaire draws the edge of a shadow through an element, the element is cut along both ends
+/// of the penumbra, each found on the element's edges by bisection: between them light falls evenly from all to
+/// nothing, beyond them nothing changes. Elements through which an edge does not run straight, from one of their edges
+/// to another, are halved until it does or they are small.
+///
+/// Penumbrae narrower than kNarrow are taken for that wide, so that parts are no thinner; what comes closer to a corner
+/// than that goes through the corner. Angles stay above about 0.5 degrees.
+///
+/// problem  its patches are those of the mesh, or its leaves as they were.
+/// E        N x channels, irradiance of the mesh's leaves, roughly; of all light [W/m2].
+ShadowEdges cut_shadow_edges(ElementMesh& mesh, const Problem& problem, const Field& E,
+                             const ShadowEdgeOptions& options, const Monitor& monitor = {});
+
+}  // namespace clerestory

@@ -4,17 +4,19 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 
-#include "solver/model/disjoint_sets.h"
+#include <OpenMesh/Core/Utils/PropertyManager.hh>
+
+#include "meshing/patch_mesh.h"
 
 namespace clerestory {
 namespace {
 
-/// Corner k of patch p is 3 p + k, counted as the triangle's corners are, whichever side p is.
-using Corner = std::uint32_t;
+constexpr std::uint32_t kNone = VertexLightmap::kNone;
 
-struct HalfEdge {
+struct TriangleEdge {
   std::uint32_t low, high;  ///< vertices
   std::uint32_t triangle;
   std::uint8_t from;  ///< corner where the edge starts, in the triangle's order
@@ -24,16 +26,16 @@ struct HalfEdge {
 /// A triangle as seen along an edge.
 struct Blade {
   double angle;  ///< around the edge, counter-clockwise seen against its direction from low to high
-  const HalfEdge* edge;
+  const TriangleEdge* edge;
 };
 
 /// Front sides look counter-clockwise around an edge that runs up, else clockwise.
-Side side_towards(const HalfEdge& e, bool counter_clockwise) {
+Side side_towards(const TriangleEdge& e, bool counter_clockwise) {
   return e.ascending == counter_clockwise ? kFront : kBack;
 }
 
 /// The edge of the patch on one side of e's triangle, counted by the patch's corners.
-std::size_t edge_of_patch(const HalfEdge& e, Side side) { return side == kFront ? e.from : 2u - e.from; }
+std::size_t edge_of_patch(const TriangleEdge& e, Side side) { return side == kFront ? e.from : 2u - e.from; }
 
 double angle_at(const std::array<Vec3, 3>& x, std::size_t k) {
   const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
@@ -41,22 +43,22 @@ double angle_at(const std::array<Vec3, 3>& x, std::size_t k) {
 }
 
 /// Of all triangles, sorted by their ends, then by triangle.
-std::vector<HalfEdge> half_edges(const PatchSet& patches) {
+std::vector<TriangleEdge> triangle_edges(const PatchSet& patches) {
   std::vector<std::uint32_t> next(patches.vertices.size() + 1, 0);
   const auto each = [&](const auto& take) {
     for (std::uint32_t t = 0; t < patches.triangle_count(); ++t)
       for (std::uint8_t k = 0; k < 3; ++k) {
         const std::uint32_t a = patches.corners[t][k].value, b = patches.corners[t][(k + 1u) % 3u].value;
-        take(HalfEdge{std::min(a, b), std::max(a, b), t, k, a < b});
+        take(TriangleEdge{std::min(a, b), std::max(a, b), t, k, a < b});
       }
   };
-  each([&](const HalfEdge& e) { ++next[e.low + 1]; });
+  each([&](const TriangleEdge& e) { ++next[e.low + 1]; });
   std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<HalfEdge> edges(3 * patches.triangle_count());
-  each([&](const HalfEdge& e) { edges[next[e.low]++] = e; });
+  std::vector<TriangleEdge> edges(3 * patches.triangle_count());
+  each([&](const TriangleEdge& e) { edges[next[e.low]++] = e; });
   const auto at = [&](std::uint32_t i) { return edges.begin() + static_cast<std::ptrdiff_t>(i); };
   for (std::size_t v = 0; v + 1 < next.size(); ++v)  // next[v] has moved on to the end of v's edges
-    std::sort(at(v > 0 ? next[v - 1] : 0), at(next[v]), [](const HalfEdge& x, const HalfEdge& y) {
+    std::sort(at(v > 0 ? next[v - 1] : 0), at(next[v]), [](const TriangleEdge& x, const TriangleEdge& y) {
       return x.high != y.high ? x.high < y.high : x.triangle < y.triangle;
     });
   return edges;
@@ -70,64 +72,44 @@ struct Facing {
   double weight = 0;  ///< angle at the point
 };
 
-/// Samples lie in the plane of a facet, whose own normal they take: moved towards the mean of all facets' centroids, a
-/// point of a convex edge would sink under the surface.
-void place_samples(const PatchSet& patches, VertexLightmap& map) {
+/// Corner k of patch p, in the patch's order.
+struct Corner {
+  std::uint32_t p, k;
+};
+
+/// Samples of the last point, around which the given corners lie. They stay in the plane of a facet, whose own normal
+/// they take: moved towards the mean of all facets' centroids, a point of a convex edge would sink under the surface.
+void place_samples(const PatchSet& patches, std::span<const Corner> around, std::vector<Facing>& facings,
+                   VertexLightmap& map) {
   constexpr double kAlike = 0.99;          // cosine of 8 degrees: turning a facet so far changes E by little
   constexpr double kInPlane = 1 - 5e-9;    // 1e-4 rad
   constexpr double kWayToCentroid = 2e-3;  // far enough from edges for single precision rays, too near to be seen
-  const std::size_t points = map.position.size(), count = patches.patch_count();
-  // Corners by point, in the order of the patches.
-  std::vector<std::uint32_t> begin_at(points + 1, 0), at(3 * count);
-  for (const auto& c : map.corners)
-    for (const std::uint32_t point : c) ++begin_at[point];
-  std::partial_sum(begin_at.begin(), begin_at.end(), begin_at.begin());
-  for (std::size_t p = count; p-- > 0;)
-    for (std::size_t k = 3; k-- > 0;) at[--begin_at[map.corners[p][k]]] = static_cast<std::uint32_t>(3 * p + k);
-
-  map.sample_begin.reserve(points + 1);
-  map.sample_begin = {0};
-  map.sample_position.reserve(points);
-  map.sample_normal.reserve(points);
-  map.sample_weight.reserve(points);
-  std::vector<Facing> facings;
-  for (std::size_t i = 0; i < points; ++i) {
-    facings.clear();
-    for (std::uint32_t c = begin_at[i]; c < begin_at[i + 1]; ++c) {
-      const PatchId p{std::size_t{at[c] / 3}};
-      const auto x = patches.corner_positions(p);
-      const std::size_t k = at[c] % 3;
-      auto facing = std::find_if(facings.begin(), facings.end(),
-                                 [&](const Facing& f) { return dot(f.normal, patches.normal[p]) > kAlike; });
-      if (facing == facings.end()) facing = facings.insert(facings.end(), Facing{patches.normal[p], {}, 0, 0});
-      facing->weight += angle_at(x, k);
-      if (dot(facing->normal, patches.normal[p]) < kInPlane) continue;
-      facing->inward += (x[0] + x[1] + x[2]) / 3 - x[k];
-      ++facing->in_plane;
-    }
-    double sum = 0;
-    for (const Facing& f : facings) sum += f.weight;
-    for (const Facing& f : facings) {
-      map.sample_position.push_back(map.position[i] + f.inward * (kWayToCentroid / f.in_plane));
-      map.sample_normal.push_back(f.normal);
-      map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
-    }
-    map.sample_begin.push_back(static_cast<std::uint32_t>(map.sample_position.size()));
+  facings.clear();
+  for (const auto& [p, k] : around) {
+    const Vec3 normal = patches.normal[p];
+    const auto x = patches.corner_positions(PatchId{std::size_t{p}});
+    auto facing =
+        std::find_if(facings.begin(), facings.end(), [&](const Facing& f) { return dot(f.normal, normal) > kAlike; });
+    if (facing == facings.end()) facing = facings.insert(facings.end(), Facing{normal, {}, 0, 0});
+    facing->weight += angle_at(x, k);
+    if (dot(facing->normal, normal) < kInPlane) continue;
+    facing->inward += (x[0] + x[1] + x[2]) / 3 - x[k];
+    ++facing->in_plane;
   }
+  double sum = 0;
+  for (const Facing& f : facings) sum += f.weight;
+  for (const Facing& f : facings) {
+    map.sample_position.push_back(map.position.back() + f.inward * (kWayToCentroid / f.in_plane));
+    map.sample_normal.push_back(f.normal);
+    map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
+  }
+  map.sample_begin.push_back(static_cast<std::uint32_t>(map.sample_position.size()));
 }
 
-}  // namespace
-
-VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
-  if (!patches.splits.empty())
-    throw std::logic_error("make_lightmap: halved patches have ElementMesh::leaf_lightmap()");
-  const std::size_t count = patches.patch_count();
-  constexpr std::uint32_t kNone = VertexLightmap::kNone;
-  VertexLightmap map;
-  map.neighbour.assign(count, {kNone, kNone, kNone});
-  std::vector<HalfEdge> edges = half_edges(patches);
-  const double least_cosine = std::cos(crease_deg * std::numbers::pi / 180);
-  DisjointSets shared(3 * count);
+/// Over each edge, the patch met first in the order of the triangles around it.
+std::vector<std::array<std::uint32_t, 3>> find_neighbours(const PatchSet& patches) {
+  std::vector<std::array<std::uint32_t, 3>> neighbour(patches.patch_count(), {kNone, kNone, kNone});
+  const std::vector<TriangleEdge> edges = triangle_edges(patches);
   std::vector<Blade> blades;
   for (std::size_t begin = 0; begin < edges.size();) {
     std::size_t end = begin + 1;
@@ -141,46 +123,86 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
     }
     std::stable_sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) { return a.angle < b.angle; });
     for (std::size_t k = 0; k < blades.size(); ++k) {
-      const HalfEdge &here = *blades[k].edge, &next = *blades[(k + 1) % blades.size()].edge;
+      const TriangleEdge &here = *blades[k].edge, &next = *blades[(k + 1) % blades.size()].edge;
       const Side side = side_towards(here, true), next_side = side_towards(next, false);
       const PatchId p = patches.side_patch[here.triangle][side], q = patches.side_patch[next.triangle][next_side];
       if (!p.valid() || !q.valid()) continue;
-      map.neighbour[p][edge_of_patch(here, side)] = q.value;
-      map.neighbour[q][edge_of_patch(next, next_side)] = p.value;
-      // One blade alone has a rim: its front and its back meet there and do not go on smoothly.
-      if (blades.size() == 1 || patches.material(p) != patches.material(q) ||
-          dot(patches.normal[p], patches.normal[q]) < least_cosine)
-        continue;
-      const auto corner = [&](PatchId patch, const HalfEdge& e, bool at_low) -> Corner {
-        const bool at_start = at_low == e.ascending;
-        return 3 * patch.value + (at_start ? e.from : (e.from + 1u) % 3u);
-      };
-      shared.join(corner(p, here, true), corner(q, next, true));
-      shared.join(corner(p, here, false), corner(q, next, false));
+      neighbour[p][edge_of_patch(here, side)] = q.value;
+      neighbour[q][edge_of_patch(next, next_side)] = p.value;
     }
     begin = end;
   }
+  return neighbour;
+}
 
-  edges = {};
-  map.corners.resize(count);
-  std::vector<std::uint32_t> point_of(3 * count, kNone);
-  for (std::uint32_t p = 0; p < count; ++p) {
-    const TriangleId t = patches.triangle[p];
-    std::array<Vec3, 3> x;
-    for (std::size_t k = 0; k < 3; ++k) x[k] = patches.vertices[patches.corners[t][k]];
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      std::uint32_t& point = point_of[shared.find(3 * p + k)];
-      if (point == kNone) {
-        point = static_cast<std::uint32_t>(map.position.size());
-        map.position.push_back(x[k]);
-        map.patch_of_point.push_back(p);
-      }
-      // Seen from the back the corners run the other way.
-      const std::uint32_t place = patches.side[p] == kFront ? k : (3 - k) % 3;
-      map.corners[p][place] = point;
+/// Where the surface does not go on smoothly.
+bool is_crease(const PatchSet& patches, OpenMesh::SmartEdgeHandle edge, double least_cosine) {
+  if (edge.is_boundary()) return true;
+  const PatchId p{static_cast<std::size_t>(edge.h0().face().idx())},
+      q{static_cast<std::size_t>(edge.h1().face().idx())};
+  // At a rim a sheet's front and its back meet.
+  return patches.triangle[p] == patches.triangle[q] || patches.material(p) != patches.material(q) ||
+         dot(patches.normal[p], patches.normal[q]) < least_cosine;
+}
+
+/// The corner that a half-edge leaves.
+Corner corner_at(OpenMesh::SmartHalfedgeHandle out) {
+  const auto first = out.face().halfedge();
+  return {static_cast<std::uint32_t>(out.face().idx()), out == first ? 0u : out == first.next() ? 1u : 2u};
+}
+
+/// Corners that share a point, by patch: those between the creases on either side of the corner that `out` leaves.
+void corners_between_creases(const OpenMesh::EProp<bool>& crease, OpenMesh::SmartHalfedgeHandle out,
+                             std::vector<Corner>& corners) {
+  corners.clear();
+  const auto given = out;
+  while (!crease[out.edge()]) {
+    out = out.opp().next();
+    if (out == given) break;  // smooth all around
+  }
+  const auto first = out;
+  do {
+    corners.push_back(corner_at(out));
+    if (crease[out.prev().edge()]) break;
+    out = out.prev().opp();
+  } while (out != first);
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.p < b.p; });
+}
+
+/// Points, in the order in which patches and the corners of their triangles first ask for one, and their samples.
+void place_points(const PatchSet& patches, double crease_deg, VertexLightmap& map) {
+  const PatchMesh mesh = join_patches(patches, map.neighbour);
+  OpenMesh::EProp<bool> crease(mesh);
+  const double least_cosine = std::cos(crease_deg * std::numbers::pi / 180);
+  for (const auto edge : mesh.edges()) crease[edge] = is_crease(patches, edge, least_cosine);
+
+  map.corners.assign(patches.patch_count(), {kNone, kNone, kNone});
+  map.sample_begin = {0};
+  std::vector<Corner> around;
+  std::vector<Facing> facings;
+  for (std::uint32_t p = 0; p < patches.patch_count(); ++p) {
+    const auto edge = OpenMesh::make_smart(mesh.face_handle(p), mesh).halfedge();
+    const bool front = patches.side[p] == kFront;
+    for (const auto out : {edge, front ? edge.next() : edge.prev(), front ? edge.prev() : edge.next()}) {
+      const std::uint32_t corner = corner_at(out).k;
+      if (map.corners[p][corner] != kNone) continue;
+      corners_between_creases(crease, out, around);
+      for (const auto& [q, k] : around) map.corners[q][k] = static_cast<std::uint32_t>(map.position.size());
+      map.position.push_back(patches.corner_positions(PatchId{std::size_t{p}})[corner]);
+      map.patch_of_point.push_back(p);
+      place_samples(patches, around, facings, map);
     }
   }
-  place_samples(patches, map);
+}
+
+}  // namespace
+
+VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
+  if (!patches.splits.empty())
+    throw std::logic_error("make_lightmap: halved patches have ElementMesh::leaf_lightmap()");
+  VertexLightmap map;
+  map.neighbour = find_neighbours(patches);
+  place_points(patches, crease_deg, map);
   map.E = Field(map.position.size(), patches.channels);
   return map;
 }

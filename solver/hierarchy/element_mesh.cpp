@@ -5,7 +5,8 @@
 #include <sstream>
 #include <utility>
 
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Core/Mesh/TriConnectivity.hh>
+#include <OpenMesh/Core/Utils/PropertyManager.hh>
 #include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
 
 #include "solver/hierarchy/leaves_behind.h"
@@ -22,29 +23,16 @@ struct EdgeKey {
   friend auto operator<=>(const EdgeKey&, const EdgeKey&) = default;
 };
 
-struct KernelTraits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-  VertexAttributes(OpenMesh::Attributes::None);
-  HalfedgeAttributes(OpenMesh::Attributes::None);
-  EdgeAttributes(OpenMesh::Attributes::None);
-  FaceAttributes(OpenMesh::Attributes::None);
-  VertexTraits {
-    std::uint32_t vertex = 0;  ///< of the patches, then middles; several where surfaces meet in one place
-  };
-  HalfedgeTraits {
-    std::uint32_t point = 0;  ///< of the lightmap, where it starts
-  };
-  FaceTraits { std::uint32_t element = 0; };
-};
-using Kernel = OpenMesh::TriMesh_ArrayKernelT<KernelTraits>;
-using HalfEdge = Kernel::HalfedgeHandle;
-using Vertex = Kernel::VertexHandle;
-using Face = Kernel::FaceHandle;
-
-Vec3 position(const Kernel& kernel, Vertex v) {
-  const auto& x = kernel.point(v);
-  return {x[0], x[1], x[2]};
+EdgeKey edge_key(const std::vector<Vec3>& vertices, std::uint32_t a, std::uint32_t b) {
+  const auto [low, high] = std::minmax(a, b);
+  const Vec3 d = vertices[high] - vertices[low];
+  return {dot(d, d), low, high};
 }
+
+using Kernel = OpenMesh::TriConnectivity;
+using HalfEdge = OpenMesh::HalfedgeHandle;
+using Vertex = OpenMesh::VertexHandle;
+using Face = OpenMesh::FaceHandle;
 
 /// Corner k of patch p is 3 p + k.
 using Corner = std::uint32_t;
@@ -95,20 +83,43 @@ void close_boundary_loops(Kernel& kernel) {
   }
 }
 
-/// A face for each patch, neighbours joined over their edges. Where several rings of patches meet in one place each
-/// has a vertex of its own, so that what is not manifold in space is so here. Not by add_face(), which refuses a wall
-/// one element long, as both of its ends are the same edge.
-Kernel half_edges_of(const PatchSet& patches, const VertexLightmap& map) {
-  const std::vector<std::uint32_t> vertex = vertices_at_corners(patches);
-  const std::vector<Corner> across = corners_across(map, vertex);
-  const auto corners = static_cast<Corner>(vertex.size());
+}  // namespace
+
+/// The leaves' faces. Where several rings of patches meet in one place each has a vertex of its own, so that what is
+/// not manifold in space is so here.
+struct ElementMesh::HalfEdges {
   Kernel kernel;
+  OpenMesh::VProp<std::uint32_t> vertex{kernel};   ///< of ElementMesh::vertices_
+  OpenMesh::HProp<std::uint32_t> point{kernel};    ///< of the lightmap, at the corner where a half-edge starts
+  OpenMesh::FProp<std::uint32_t> element{kernel};  ///< leaf
+
+  HalfEdges(const PatchSet& patches, const VertexLightmap& map);
+
+  /// The half-edge that starts at corner k of a leaf; faces keep that of their longest edge.
+  HalfEdge at_corner(const Element& leaf, std::size_t k) const {
+    const HalfEdge longest = kernel.halfedge_handle(face_of(leaf));
+    if (k == leaf.edge) return longest;
+    const HalfEdge next = kernel.next_halfedge_handle(longest);
+    return k == (leaf.edge + 1u) % 3 ? next : kernel.next_halfedge_handle(next);
+  }
+  static Face face_of(const Element& leaf) { return Face(static_cast<int>(leaf.first)); }
+
+  std::uint32_t start(HalfEdge h) const { return vertex[kernel.from_vertex_handle(h)]; }
+  std::uint32_t end(HalfEdge h) const { return vertex[kernel.to_vertex_handle(h)]; }
+  std::uint32_t element_at(HalfEdge h) const { return kernel.is_boundary(h) ? kNone : element[kernel.face_handle(h)]; }
+};
+
+/// A face for each patch, neighbours joined over their edges. Not by add_face(), which refuses a wall one element long,
+/// as both of its ends are the same edge.
+ElementMesh::HalfEdges::HalfEdges(const PatchSet& patches, const VertexLightmap& map) {
+  const std::vector<std::uint32_t> vertex_at = vertices_at_corners(patches);
+  const std::vector<Corner> across = corners_across(map, vertex_at);
+  const auto corners = static_cast<Corner>(vertex_at.size());
   std::vector<Vertex> at(corners);
   for (Corner c = 0; c < corners; ++c) {
     if (at[c].is_valid()) continue;
-    const Vec3& x = patches.vertices[vertex[c]];
-    const Vertex v = kernel.add_vertex({x.x, x.y, x.z});
-    kernel.data(v).vertex = vertex[c];
+    const Vertex v = kernel.new_vertex();
+    vertex[v] = vertex_at[c];
     for (Corner d = c; d != kNone && !at[d].is_valid();) {
       at[d] = v;
       d = across[d] == kNone ? kNone : following(across[d]);
@@ -123,80 +134,58 @@ Kernel half_edges_of(const PatchSet& patches, const VertexLightmap& map) {
   }
   for (Corner first = 0; first < corners; first += 3) {
     const Face face = kernel.new_face();
-    kernel.data(face).element = first / 3;
+    element[face] = first / 3;
     kernel.set_halfedge_handle(face, edge[first]);
     for (Corner c = first; c < first + 3; ++c) {
       kernel.set_face_handle(edge[c], face);
       kernel.set_next_halfedge_handle(edge[c], edge[following(c)]);
       kernel.set_halfedge_handle(at[c], edge[c]);
-      kernel.data(edge[c]).point = map.corners[c / 3][c % 3];
+      point[edge[c]] = map.corners[c / 3][c % 3];
     }
   }
   close_boundary_loops(kernel);
-  return kernel;
 }
 
-}  // namespace
-
-struct ElementMesh::HalfEdges {
-  Kernel kernel;
-  std::size_t vertices;  ///< of the patches and middles
-
-  /// The half-edge that starts at corner k of a leaf; faces keep that of their longest edge.
-  HalfEdge at_corner(const Element& leaf, std::size_t k) const {
-    const HalfEdge longest = kernel.halfedge_handle(face_of(leaf));
-    if (k == leaf.edge) return longest;
-    const HalfEdge next = kernel.next_halfedge_handle(longest);
-    return k == (leaf.edge + 1u) % 3 ? next : kernel.next_halfedge_handle(next);
-  }
-  static Face face_of(const Element& leaf) { return Face(static_cast<int>(leaf.first)); }
-
-  EdgeKey key(HalfEdge h) const {
-    const Vertex a = kernel.from_vertex_handle(h), b = kernel.to_vertex_handle(h);
-    const std::uint32_t from = kernel.data(a).vertex, to = kernel.data(b).vertex;
-    const Vec3 d = from < to ? position(kernel, b) - position(kernel, a) : position(kernel, a) - position(kernel, b);
-    return {dot(d, d), std::min(from, to), std::max(from, to)};
-  }
-  /// Makes the face of `corner0` that of a leaf.
-  void describe(Element& leaf, std::uint32_t number, HalfEdge corner0) {
-    const Face face = kernel.face_handle(corner0);
-    kernel.data(face).element = number;
-    leaf.first = static_cast<std::uint32_t>(face.idx());
-    leaf.edge = 0;
-    HalfEdge h = corner0, longest_one = corner0;
-    EdgeKey longest = key(h);
-    for (std::uint8_t k = 1; k < 3; ++k) {
-      h = kernel.next_halfedge_handle(h);
-      if (const EdgeKey here = key(h); here > longest) longest = here, leaf.edge = k, longest_one = h;
-    }
-    kernel.set_halfedge_handle(face, longest_one);
-  }
-  std::uint32_t element_at(HalfEdge h) const {
-    return kernel.is_boundary(h) ? kNone : kernel.data(kernel.face_handle(h)).element;
-  }
-};
-
 ElementMesh::ElementMesh(const PatchSet& patches, VertexLightmap map)
-    : patches_(patches), leaf_count_(patches.patch_count()) {
-  half_edges_ = std::make_unique<HalfEdges>(half_edges_of(patches, map), patches.vertices.size());
+    : patches_(patches),
+      vertices_(patches.vertices),
+      half_edges_(std::make_unique<HalfEdges>(patches, map)),
+      leaf_count_(patches.patch_count()) {
   points_ = std::move(map);
   points_.corners = {}, points_.neighbour = {}, points_.E = {};
   first_middle_ = points_.position.size();
   elements_.resize(patches.patch_count());
   for (std::uint32_t p = 0; p < elements_.size(); ++p) {
     elements_[p].area = patches.area[p], elements_[p].patch = p;
-    half_edges_->describe(elements_[p], p, half_edges_->kernel.halfedge_handle(Face(static_cast<int>(p))));
+    describe(elements_[p], p, half_edges_->kernel.halfedge_handle(Face(static_cast<int>(p))).idx());
   }
 }
 ElementMesh::~ElementMesh() = default;
 ElementMesh::ElementMesh(ElementMesh&&) noexcept = default;
 
+/// Makes the face of the half-edge that starts at its corner 0 that of a leaf.
+void ElementMesh::describe(Element& leaf, std::uint32_t number, int corner0) {
+  Kernel& kernel = half_edges_->kernel;
+  HalfEdge h(corner0), longest_one = h;
+  const Face face = kernel.face_handle(h);
+  half_edges_->element[face] = number;
+  leaf.first = static_cast<std::uint32_t>(face.idx());
+  leaf.edge = 0;
+  const auto key = [&] { return edge_key(vertices_, half_edges_->start(h), half_edges_->end(h)); };
+  EdgeKey longest = key();
+  for (std::uint8_t k = 1; k < 3; ++k) {
+    h = kernel.next_halfedge_handle(h);
+    if (const EdgeKey here = key(); here > longest) longest = here, leaf.edge = k, longest_one = h;
+  }
+  kernel.set_halfedge_handle(face, longest_one);
+}
+
 namespace {
 
 /// Corners of a parted element from those of its parts.
-ElementMesh::Corners corners_of_whole(std::size_t edge, const ElementMesh::Corners& first,
-                                      const ElementMesh::Corners& second) {
-  ElementMesh::Corners whole;
+template <class Corners>
+Corners corners_of_whole(std::size_t edge, const Corners& first, const Corners& second) {
+  Corners whole;
   whole[edge] = first[0], whole[(edge + 1) % 3] = second[1], whole[(edge + 2) % 3] = first[2];
   return whole;
 }
@@ -206,10 +195,8 @@ ElementMesh::Corners corners_of_whole(std::size_t edge, const ElementMesh::Corne
 ElementMesh::Corners ElementMesh::vertices(std::uint32_t e) const {
   const Element& element = elements_[e];
   if (element.parted) return corners_of_whole(element.edge, vertices(element.first), vertices(element.first + 1));
-  const Kernel& kernel = half_edges_->kernel;
   Corners out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out[k] = kernel.data(kernel.from_vertex_handle(half_edges_->at_corner(element, k))).vertex;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = half_edges_->start(half_edges_->at_corner(element, k));
   return out;
 }
 
@@ -217,7 +204,7 @@ ElementMesh::Corners ElementMesh::points_of(std::uint32_t e) const {
   const Element& element = elements_[e];
   if (element.parted) return corners_of_whole(element.edge, points_of(element.first), points_of(element.first + 1));
   Corners out;
-  for (std::size_t k = 0; k < 3; ++k) out[k] = half_edges_->kernel.data(half_edges_->at_corner(element, k)).point;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = half_edges_->point[half_edges_->at_corner(element, k)];
   return out;
 }
 
@@ -230,12 +217,17 @@ ElementMesh::Corners ElementMesh::neighbours(std::uint32_t leaf) const {
 }
 
 std::array<Vec3, 3> ElementMesh::corner_positions(std::uint32_t e) const {
-  const Corners point = points_of(e);
-  return {points_.position[point[0]], points_.position[point[1]], points_.position[point[2]]};
+  const Element& element = elements_[e];
+  if (element.parted)
+    return corners_of_whole(element.edge, corner_positions(element.first), corner_positions(element.first + 1));
+  std::array<Vec3, 3> out;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = vertices_[half_edges_->start(half_edges_->at_corner(element, k))];
+  return out;
 }
 
 double ElementMesh::longest_edge(std::uint32_t leaf) const {
-  return std::sqrt(half_edges_->key(half_edges_->at_corner(elements_[leaf], elements_[leaf].edge)).length2);
+  const HalfEdge h = half_edges_->at_corner(elements_[leaf], elements_[leaf].edge);
+  return std::sqrt(edge_key(vertices_, half_edges_->start(h), half_edges_->end(h)).length2);
 }
 
 void ElementMesh::split(std::span<const std::uint32_t> marked) {
@@ -279,12 +271,12 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
   const auto parting = [&](HalfEdge h) {
     const HalfEdge to_apex = kernel.next_halfedge_handle(h), from_apex = kernel.next_halfedge_handle(to_apex);
     return Parting{half_edges_->element_at(h),
-                   {kernel.data(h).point, kernel.data(to_apex).point, kernel.data(from_apex).point},
-                   position(kernel, kernel.from_vertex_handle(from_apex))};
+                   {half_edges_->point[h], half_edges_->point[to_apex], half_edges_->point[from_apex]},
+                   vertices_[half_edges_->start(from_apex)]};
   };
   const HalfEdge h = half_edges_->at_corner(elements_[element], edge), back = kernel.opposite_halfedge_handle(h);
   const Vertex start = kernel.from_vertex_handle(h), end = kernel.to_vertex_handle(h);
-  const Vec3 place = position(kernel, start) * (1 - double{at}) + position(kernel, end) * double{at};
+  const Vec3 place = vertices_[half_edges_->start(h)] * (1 - double{at}) + vertices_[half_edges_->end(h)] * double{at};
   const bool alone = kernel.is_boundary(back);
   const Parting here = parting(h), there = alone ? Parting{} : parting(back);
   const std::size_t edge_there = alone ? 0 : [&] {
@@ -296,8 +288,9 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
   const std::uint32_t point = add_point(here, smooth ? &there : nullptr, place);
   const std::uint32_t point_there = alone || smooth ? point : add_point(there, nullptr, place);
 
-  const Vertex middle = kernel.add_vertex({place.x, place.y, place.z});
-  kernel.data(middle).vertex = static_cast<std::uint32_t>(half_edges_->vertices++);
+  const Vertex middle = kernel.new_vertex();
+  half_edges_->vertex[middle] = static_cast<std::uint32_t>(vertices_.size());
+  vertices_.push_back(place);
   kernel.split(kernel.edge_handle(h), middle);
   const HalfEdge to_end = kernel.find_halfedge(middle, end), to_start = kernel.find_halfedge(middle, start);
 
@@ -313,9 +306,9 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
     const auto add = [&](HalfEdge corner0, const Corners& points, double part_of_area) {
       HalfEdge at_corner = corner0;
       for (const std::uint32_t p : points)
-        kernel.data(at_corner).point = p, at_corner = kernel.next_halfedge_handle(at_corner);
+        half_edges_->point[at_corner] = p, at_corner = kernel.next_halfedge_handle(at_corner);
       half.area = part_of_area;
-      half_edges_->describe(half, static_cast<std::uint32_t>(elements_.size()), corner0);
+      describe(half, static_cast<std::uint32_t>(elements_.size()), corner0.idx());
       elements_.push_back(half);
     };
     add(first, {was.point[0], middle_point, was.point[2]}, area * double{share});
@@ -378,10 +371,7 @@ PatchSet ElementMesh::leaf_patches() const {
   PatchSet out;
   out.origin = patches_.origin;
   out.channels = patches_.channels;
-  out.vertices = patches_.vertices;
-  out.vertices.resize(half_edges_->vertices);
-  for (const Vertex v : half_edges_->kernel.vertices())
-    out.vertices[half_edges_->kernel.data(v).vertex] = position(half_edges_->kernel, v);
+  out.vertices = vertices_;
   out.materials = patches_.materials;
   out.surfaces = patches_.surfaces;
   out.side_patch = patches_.side_patch;

@@ -83,11 +83,13 @@ class ElementMesh {
   struct HalfEdges;
   struct Parting;
 
+  void describe(Element& leaf, std::uint32_t number, int corner0);
   void part_with_neighbour(std::uint32_t element, std::size_t edge, float at);
   std::uint32_t add_point(const Parting& here, const Parting* other, const Vec3& place);
 
   const PatchSet& patches_;
   std::vector<Element> elements_;
+  std::vector<Vec3> vertices_;
   std::unique_ptr<HalfEdges> half_edges_;
   VertexLightmap points_;  ///< position and samples only
   std::size_t first_middle_ = 0, leaf_count_ = 0;

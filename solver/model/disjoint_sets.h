@@ -1,5 +1,5 @@
 #pragma once
-// Numbers joined into sets: patches that see each other, corners that share a point.
+// Numbers joined into sets: patches that see each other, what hangs together.
 
 #include <algorithm>
 #include <cstddef>

@@ -91,6 +91,7 @@ class Builder {
     tree_.leaf_begin.push_back(static_cast<std::uint32_t>(tree_.patch.size()));
     tree_.area.push_back(0);
     tree_.cluster.push_back(cluster);
+    tree_.cut.push_back(false);
     tree_.clusters += cluster;
     return node;
   }
@@ -104,8 +105,12 @@ class Builder {
     const std::uint32_t node = open(parent, false);
     if (!patches_.splits.empty() && patches_.splits[split].first_part != SplitNode::kNone) {
       const std::uint32_t half = patches_.splits[split].first_part;
-      const double first = add_surface(half, node);
-      return close(node, first + add_surface(half + 1, node));
+      double area = add_surface(half, node);
+      const auto second = static_cast<std::uint32_t>(tree_.end.size());
+      area += add_surface(half + 1, node);
+      const auto is_whole_or_cut = [&](std::uint32_t v) { return tree_.end[v] == v + 1 || tree_.cut[v]; };
+      tree_.cut[node] = patches_.splits[split].is_cut() && is_whole_or_cut(node + 1) && is_whole_or_cut(second);
+      return close(node, area);
     }
     const std::uint32_t patch = patches_.splits.empty() ? split : patches_.splits[split].patch;
     tree_.patch.push_back(patch);

@@ -16,9 +16,9 @@ bool is_small(const ElementTree& tree, std::uint32_t v) {
 std::vector<Receiver> within(double diameter, const ElementTree& tree, const std::vector<Sphere>& spheres) {
   std::vector<Receiver> receivers;
   for (std::uint32_t v = 0; v < tree.size();) {
-    const bool leaf = tree.is_leaf(v);
-    if (leaf || (diameter > 0 && 2 * spheres[v].radius <= diameter && is_small(tree, v))) {
-      receivers.push_back({tree.first_leaf(v), tree.leaf_end(v), 1, !leaf});
+    const bool surface = tree.is_leaf(v) || (tree.cut[v] && tree.leaf_end(v) - tree.first_leaf(v) <= kMostMembers);
+    if (surface || (diameter > 0 && 2 * spheres[v].radius <= diameter && is_small(tree, v))) {
+      receivers.push_back({tree.first_leaf(v), tree.leaf_end(v), 1, !surface});
       v = tree.end[v];
     } else {
       ++v;

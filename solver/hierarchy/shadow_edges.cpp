@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,8 +24,9 @@ constexpr double kNarrowest = 5e-3;      // ... but never more than so much [m]
 constexpr double kWide = 0.5;            // of an edge: beyond, halving shows a penumbra as well
 constexpr double kLongest = 0.5;    // of elements that are cut: no wider than kNarrowest, no thinner than 1 : 100 [m]
 constexpr double kStraight = 0.02;  // of its length: how far the middle of an edge may lie off the straight line ...
-constexpr double kStraightest = 4e-3;  // ... but no farther than this [m]
-constexpr double kSharpness = 0.01;    // of the penumbra: how well its ends are known
+constexpr double kStraightest = 4e-3;                         // ... but no farther than this [m]
+constexpr double kSharpness = 0.01;                           // of the penumbra: how well its ends are known
+constexpr double kLeastAngle = 0.6 * std::numbers::pi / 180;  // of parts, or half of the element's own
 constexpr int kMostRounds = 8;
 
 void add_leaves_under(const ElementMesh& mesh, std::uint32_t e, std::vector<std::uint32_t>& out) {
@@ -200,6 +202,31 @@ class PointSet {
   std::vector<bool> is_in_;
 };
 
+double least_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto at = [](const Vec3& x, const Vec3& y, const Vec3& z) {
+    return std::atan2(length(cross(y - x, z - x)), dot(y - x, z - x));
+  };
+  return std::min({at(a, b, c), at(b, c, a), at(c, a, b)});
+}
+
+/// Whether a cut at the share t of edge k leaves parts of the leaf that are not too thin.
+bool leaves_angles(const ElementMesh& mesh, std::uint32_t leaf, std::size_t k, double t) {
+  const auto x = mesh.corner_positions(leaf);
+  const Vec3 &start = x[k], &end = x[(k + 1) % 3], &apex = x[(k + 2) % 3];
+  const Vec3 middle = start * (1 - t) + end * t;
+  return std::min(least_angle(start, middle, apex), least_angle(middle, end, apex)) >
+         std::min(kLeastAngle, 0.5 * least_angle(start, end, apex));
+}
+
+/// The same of the leaf across that edge, if there is one.
+bool leaves_angles_across(const ElementMesh& mesh, std::uint32_t leaf, std::size_t k, double t) {
+  const std::uint32_t other = mesh.neighbours(leaf)[k];
+  if (other == VertexLightmap::kNone) return true;
+  const auto back = mesh.neighbours(other);
+  const auto edge = static_cast<std::size_t>(std::find(back.begin(), back.end(), leaf) - back.begin());
+  return leaves_angles(mesh, other, edge, 1 - t);
+}
+
 /// The edges of one light's shadows.
 class Cutter {
  public:
@@ -297,6 +324,7 @@ class Cutter {
         at_end_[end].set(t < near ? a : b);
         continue;
       }
+      if (!leaves_angles(mesh_, leaf, k, t) || !leaves_angles_across(mesh_, leaf, k, t)) continue;
       mesh_.cut(leaf, k, t);
       const std::uint32_t first = mesh_[leaf].first;
       at_end_[end].set(mesh_.points_of(first)[1]);

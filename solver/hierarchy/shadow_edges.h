@@ -26,8 +26,9 @@ struct ShadowEdges {
 /// nothing, beyond them nothing changes. Elements through which an edge does not run straight, from one of their edges
 /// to another, are halved until it does or they are small.
 ///
-/// Penumbrae narrower than kNarrow are taken for that wide, so that parts are no thinner; what comes closer to a corner
-/// than that goes through the corner. Angles stay above about 0.5 degrees.
+/// Penumbrae narrower than 2 % of an element, but no more than 5 mm, are taken for that wide, so that parts are no
+/// thinner; what comes closer to a corner than half of that goes through the corner. No cut makes an angle below 0.6
+/// degrees, but in elements that have less than twice that already.
 ///
 /// problem  its patches are those of the mesh, or its leaves as they were.
 /// E        N x channels, irradiance of the mesh's leaves, roughly; of all light [W/m2].

@@ -18,6 +18,7 @@ struct ElementTree {
   std::vector<std::uint32_t> leaf_begin;     ///< V + 1, leaves before the node
   std::vector<double> area;                  ///< V [m2]
   std::vector<bool> cluster;                 ///< V, of more than one patch
+  std::vector<bool> cut;                     ///< V, of one patch, cut and not halved, and so are all of its parts
   std::vector<std::uint32_t> patch;          ///< N, PatchId of each leaf
   std::vector<std::uint32_t> node_of_patch;  ///< N, leaf node by PatchId
   std::size_t clusters = 0;

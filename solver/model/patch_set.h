@@ -25,6 +25,7 @@ struct SplitNode {
   std::uint32_t patch = kNone;       ///< PatchId, when it is not parted
   float at = 0.5f;                   ///< share of the edge before its middle, in (0, 1)
   std::uint8_t edge = 0;
+  bool is_cut() const { return at != 0.5f; }  ///< where light asked for it, and not halved
 };
 
 /// A triangle always blocks light (glass: passes its share; a mirror: sends it on); its sides take part in transport as

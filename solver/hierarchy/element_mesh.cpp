@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <OpenMesh/Core/Mesh/TriConnectivity.hh>
-#include <OpenMesh/Core/Utils/PropertyManager.hh>
 #include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
 
 #include "solver/hierarchy/leaves_behind.h"
@@ -33,6 +32,22 @@ using Kernel = OpenMesh::TriConnectivity;
 using HalfEdge = OpenMesh::HalfedgeHandle;
 using Vertex = OpenMesh::VertexHandle;
 using Face = OpenMesh::FaceHandle;
+
+/// A number for each vertex, half-edge or face: a property of the kernel, looked up once.
+template <class Handle, template <class> class Property>
+class Numbers {
+ public:
+  explicit Numbers(Kernel& kernel) {
+    Property<std::uint32_t> property;
+    kernel.add_property(property);
+    numbers_ = &kernel.property(property).data_vector();
+  }
+  std::uint32_t operator[](Handle h) const { return (*numbers_)[static_cast<std::size_t>(h.idx())]; }
+  std::uint32_t& operator[](Handle h) { return (*numbers_)[static_cast<std::size_t>(h.idx())]; }
+
+ private:
+  std::vector<std::uint32_t>* numbers_;  ///< grows with the kernel
+};
 
 /// Corner k of patch p is 3 p + k.
 using Corner = std::uint32_t;
@@ -89,9 +104,9 @@ void close_boundary_loops(Kernel& kernel) {
 /// not manifold in space is so here.
 struct ElementMesh::HalfEdges {
   Kernel kernel;
-  OpenMesh::VProp<std::uint32_t> vertex{kernel};   ///< of ElementMesh::vertices_
-  OpenMesh::HProp<std::uint32_t> point{kernel};    ///< of the lightmap, at the corner where a half-edge starts
-  OpenMesh::FProp<std::uint32_t> element{kernel};  ///< leaf
+  Numbers<Vertex, OpenMesh::VPropHandleT> vertex{kernel};   ///< of ElementMesh::vertices_
+  Numbers<HalfEdge, OpenMesh::HPropHandleT> point{kernel};  ///< of the lightmap, at the corner where a half-edge starts
+  Numbers<Face, OpenMesh::FPropHandleT> element{kernel};    ///< leaf
 
   HalfEdges(const PatchSet& patches, const VertexLightmap& map);
 
@@ -101,6 +116,14 @@ struct ElementMesh::HalfEdges {
     if (k == leaf.edge) return longest;
     const HalfEdge next = kernel.next_halfedge_handle(longest);
     return k == (leaf.edge + 1u) % 3 ? next : kernel.next_halfedge_handle(next);
+  }
+  /// Those of all corners of a leaf.
+  std::array<HalfEdge, 3> around(const Element& leaf) const {
+    std::array<HalfEdge, 3> at;
+    at[leaf.edge] = kernel.halfedge_handle(face_of(leaf));
+    at[(leaf.edge + 1u) % 3] = kernel.next_halfedge_handle(at[leaf.edge]);
+    at[(leaf.edge + 2u) % 3] = kernel.next_halfedge_handle(at[(leaf.edge + 1u) % 3]);
+    return at;
   }
   static Face face_of(const Element& leaf) { return Face(static_cast<int>(leaf.first)); }
 
@@ -195,34 +218,32 @@ Corners corners_of_whole(std::size_t edge, const Corners& first, const Corners& 
 ElementMesh::Corners ElementMesh::vertices(std::uint32_t e) const {
   const Element& element = elements_[e];
   if (element.parted) return corners_of_whole(element.edge, vertices(element.first), vertices(element.first + 1));
-  Corners out;
-  for (std::size_t k = 0; k < 3; ++k) out[k] = half_edges_->start(half_edges_->at_corner(element, k));
-  return out;
+  const auto h = half_edges_->around(element);
+  return {half_edges_->start(h[0]), half_edges_->start(h[1]), half_edges_->start(h[2])};
 }
 
 ElementMesh::Corners ElementMesh::points_of(std::uint32_t e) const {
   const Element& element = elements_[e];
   if (element.parted) return corners_of_whole(element.edge, points_of(element.first), points_of(element.first + 1));
-  Corners out;
-  for (std::size_t k = 0; k < 3; ++k) out[k] = half_edges_->point[half_edges_->at_corner(element, k)];
-  return out;
+  const auto h = half_edges_->around(element);
+  return {half_edges_->point[h[0]], half_edges_->point[h[1]], half_edges_->point[h[2]]};
 }
 
 ElementMesh::Corners ElementMesh::neighbours(std::uint32_t leaf) const {
-  Corners out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out[k] = half_edges_->element_at(
-        half_edges_->kernel.opposite_halfedge_handle(half_edges_->at_corner(elements_[leaf], k)));
-  return out;
+  const auto h = half_edges_->around(elements_[leaf]);
+  const auto across = [&](std::size_t k) {
+    return half_edges_->element_at(half_edges_->kernel.opposite_halfedge_handle(h[k]));
+  };
+  return {across(0), across(1), across(2)};
 }
 
 std::array<Vec3, 3> ElementMesh::corner_positions(std::uint32_t e) const {
   const Element& element = elements_[e];
   if (element.parted)
     return corners_of_whole(element.edge, corner_positions(element.first), corner_positions(element.first + 1));
-  std::array<Vec3, 3> out;
-  for (std::size_t k = 0; k < 3; ++k) out[k] = vertices_[half_edges_->start(half_edges_->at_corner(element, k))];
-  return out;
+  const auto h = half_edges_->around(element);
+  return {vertices_[half_edges_->start(h[0])], vertices_[half_edges_->start(h[1])],
+          vertices_[half_edges_->start(h[2])]};
 }
 
 double ElementMesh::longest_edge(std::uint32_t leaf) const {

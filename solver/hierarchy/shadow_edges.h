@@ -10,7 +10,7 @@
 namespace clerestory {
 
 struct ShadowEdgeOptions {
-  double contrast = 0.2;  ///< lights that give less of an element's irradiance than this share draw no edge there [1]
+  double contrast = 0.35;  ///< lights that give less of an element's irradiance than this share draw no edge there [1]
   double shortest_edge = 0;  ///< elements are not halved below this [m]
   std::size_t most_elements = 1'000'000;
 };

@@ -125,7 +125,7 @@ std::string round_line(const char* what, const Solution& s, std::size_t leaves, 
 
 /// links -> gather -> push-pull on the leaves as they are. before: the round that came earlier, if any.
 Round solve_round(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options, Quality quality,
-                  const char* name, const Round* before, const Monitor& monitor) {
+                  const char* name, Round* before, const Monitor& monitor) {
   Round round;
   round.element = mesh.leaves();
   HierarchicalSolution& out = round.result;
@@ -142,6 +142,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   if (before) {
     guess = inherited(before->result.solution.B, before->element, mesh);
     glow = inherited(above_ground(before->result.elements, before->result.solution.B, *before), before->element, mesh);
+    before->result.elements = {};  // 200 bytes each; should this round be stopped, they are made anew
   } else {
     glow = leaves.M;
     for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.scattered(direct.E, i));
@@ -283,7 +284,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     if (!log.empty()) out.solution.stopped_at = log.back();
     log.push_back("stopped early");
   }
-  if (returned.size() != mesh.leaf_count()) {  // stopped after more were halved
+  if (out.elements.patch_count() != mesh.leaf_count()) {  // stopped after more were halved, or in the next round
     for (Field* f : {&out.delta_light, &out.solution.E, &out.solution.B})
       if (!f->value.empty()) *f = inherited(*f, returned, mesh);
     out.elements = mesh.leaf_patches();

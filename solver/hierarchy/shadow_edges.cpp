@@ -74,18 +74,13 @@ struct Outline {
   }
 };
 
-Outline outline(const SharpLight& light, const Facet& facet, const RayScene& rays) {
-  SegmentPacket packet;
-  int lane = 0;
-  const auto add = [&](const Vec3& p) {
-    Vec3 from, to;
-    light.segment(p, facet.normal(), from, to);
-    packet.set(lane++, from, to);
-  };
-  for (std::size_t k = 0; k < 3; ++k) add(facet.on_edge(k, 0));
+Outline outline(const SharpLight& light, const Facet& facet) {
+  std::array<Vec3, 3 + 3 * kInner> points;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k) points[count++] = facet.on_edge(k, 0);
   for (std::size_t k = 0; k < 3; ++k)
-    for (int i = 1; i <= kInner; ++i) add(facet.on_edge(k, i / (kInner + 1.0)));
-  return {rays.visible16(packet, static_cast<std::uint16_t>((1u << lane) - 1))};
+    for (int i = 1; i <= kInner; ++i) points[count++] = facet.on_edge(k, i / (kInner + 1.0));
+  return {light.see_centre(points, facet.normal())};
 }
 
 /// The share of the way from a to b at which what `holds` at b begins to: it does not at a.
@@ -230,8 +225,8 @@ bool leaves_angles_across(const ElementMesh& mesh, std::uint32_t leaf, std::size
 /// The edges of one light's shadows.
 class Cutter {
  public:
-  Cutter(ElementMesh& mesh, const Problem& problem, const SharpLight& light, const ShadowEdgeOptions& options)
-      : mesh_(mesh), problem_(problem), light_(light), options_(options) {}
+  Cutter(ElementMesh& mesh, const SharpLight& light, const ShadowEdgeOptions& options)
+      : mesh_(mesh), light_(light), options_(options) {}
 
   /// Halves what is not straight; leaves that are stay in straight_.
   void look_at(std::vector<std::uint32_t> candidates, ShadowEdges& done, const Monitor& monitor) {
@@ -240,7 +235,7 @@ class Cutter {
       parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && !monitor.should_stop(); ++i) {
           const Facet facet(mesh_, candidates[i]);
-          const Outline seen = outline(light_, facet, problem_.rays);
+          const Outline seen = outline(light_, facet);
           if (seen.mixed()) shapes[i] = shape(light_, facet, seen);
         }
       });
@@ -314,7 +309,7 @@ class Cutter {
       if (at_end_[end][a] || at_end_[end][b]) continue;
       auto [known, is_new] = known_.try_emplace(std::pair{std::min(a, b), std::max(a, b)});
       if (is_new) {
-        if (!seen) seen = outline(light_, facet, problem_.rays);
+        if (!seen) seen = outline(light_, facet);
         if (const std::optional<double> t = place_of(end, light_, facet, k, *seen)) known->second = a < b ? *t : 1 - *t;
       }
       if (!known->second) continue;
@@ -348,7 +343,6 @@ class Cutter {
   }
 
   ElementMesh& mesh_;
-  const Problem& problem_;
   const SharpLight& light_;
   const ShadowEdgeOptions& options_;
   std::vector<std::uint32_t> straight_, others_;
@@ -374,7 +368,7 @@ ShadowEdges cut_shadow_edges(ElementMesh& mesh, const Problem& problem, const Fi
     std::vector<std::uint32_t> candidates;
     for (std::size_t i = 0; i < leaves.size(); ++i)
       if (worth[i]) add_leaves_under(mesh, leaves[i], candidates);
-    Cutter cutter(mesh, problem, light, options);
+    Cutter cutter(mesh, light, options);
     cutter.look_at(std::move(candidates), done, monitor);
     if (monitor.should_stop()) break;
     cutter.cut(done);

@@ -1,6 +1,7 @@
 #include "solver/illumination/sharp_light.h"
 
 #include <algorithm>
+#include <array>
 
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
@@ -19,44 +20,52 @@ double SharpLight::open_irradiance(const Vec3& p, const Vec3& n) const {
   return luminous_mean(sun_->normal_irradiance) * std::max(0.0, dot(n, sun_->direction));
 }
 
-void SharpLight::segment(const Vec3& p, const Vec3& n, Vec3& from, Vec3& to) const {
+SharpLight::Segment SharpLight::to_centre(const Vec3& p, const Vec3& n) const {
   const double lift = problem_->rays.lift();
-  from = p + n * lift;
-  to = luminaire_ ? short_of(luminaire_->position, from, lift)
-                  : from + sun_->direction * (4 * problem_->rays.diameter());
+  const Vec3 from = p + n * lift;
+  if (luminaire_) return {from, short_of(luminaire_->position, from, lift)};
+  return {from, from + sun_->direction * (4 * problem_->rays.diameter())};
 }
 
-bool SharpLight::sees_centre(const Vec3& p, const Vec3& n) const {
-  Vec3 from, to;
-  segment(p, n, from, to);
-  return problem_->rays.visible(from, to);
+SharpLight::Segment SharpLight::to_rim(const Vec3& p, const Vec3& n, int k) const {
+  const double lift = problem_->rays.lift(), around = static_cast<double>(k) / kRimRays;
+  const Vec3 from = p + n * lift;
+  if (luminaire_) return {from, short_of(rim_point(*luminaire_, from, around), from, lift)};
+  return {from, from + direction_to_sun(*sun_, kRim, around) * (4 * problem_->rays.diameter())};
 }
 
-Vec3 SharpLight::rim(const Vec3& p, int k) const {
-  const double around = static_cast<double>(k) / kRimRays;
-  if (luminaire_) return rim_point(*luminaire_, p, around);
-  return p + direction_to_sun(*sun_, kRim, around) * (4 * problem_->rays.diameter());
+std::uint16_t SharpLight::free(std::span<const Segment> segments) const {
+  const RayScene& rays = problem_->rays;
+  const std::uint32_t mirror = sun_ ? sun_->mirror : luminaire_->mirror;
+  if (mirror == kNoMirror) {
+    SegmentPacket packet;
+    for (std::size_t k = 0; k < segments.size(); ++k) packet.set(static_cast<int>(k), segments[k].from, segments[k].to);
+    return rays.visible16(packet, static_cast<std::uint16_t>((1u << segments.size()) - 1));
+  }
+  unsigned free = 0;
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    if (!rays.transmittance_by_mirror(segments[k].from, segments[k].to, mirror).is_black()) free |= 1u << k;
+  return static_cast<std::uint16_t>(free);
+}
+
+std::uint16_t SharpLight::see_centre(std::span<const Vec3> points, const Vec3& n) const {
+  std::array<Segment, 16> segments;
+  for (std::size_t k = 0; k < points.size(); ++k) segments[k] = to_centre(points[k], n);
+  return free(std::span(segments).first(points.size()));
 }
 
 LightSeen SharpLight::seen(const Vec3& p, const Vec3& n) const {
   if (luminaire_ && opening_rays(*luminaire_, p) == 1) return sees_centre(p, n) ? LightSeen::all : LightSeen::none;
-  const double lift = problem_->rays.lift();
-  const Vec3 from = p + n * lift;
-  SegmentPacket packet;
-  for (int k = 0; k < kRimRays; ++k) {
-    const Vec3 to = rim(from, k);
-    packet.set(k, from, luminaire_ ? short_of(to, from, lift) : to);
-  }
-  const std::uint16_t free = problem_->rays.visible16(packet);
-  return free == 0 ? LightSeen::none : free == 0xffff ? LightSeen::all : LightSeen::part;
+  std::array<Segment, kRimRays> segments;
+  for (int k = 0; k < kRimRays; ++k) segments[static_cast<std::size_t>(k)] = to_rim(p, n, k);
+  const std::uint16_t seen = free(segments);
+  return seen == 0 ? LightSeen::none : seen == 0xffff ? LightSeen::all : LightSeen::part;
 }
 
 std::vector<SharpLight> sharp_lights(const Problem& problem) {
   std::vector<SharpLight> lights;
-  for (const PlacedSun& sun : problem.lights.suns)
-    if (sun.mirror == kNoMirror) lights.emplace_back(problem, sun);
-  for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
-    if (luminaire.mirror == kNoMirror) lights.emplace_back(problem, luminaire);
+  for (const PlacedSun& sun : problem.lights.suns) lights.emplace_back(problem, sun);
+  for (const PlacedLuminaire& luminaire : problem.lights.luminaires) lights.emplace_back(problem, luminaire);
   return lights;
 }
 

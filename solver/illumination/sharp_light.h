@@ -2,6 +2,7 @@
 // A light small enough to draw the edges of shadows: the sun, or a luminaire.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solver/illumination/problem.h"
@@ -11,8 +12,7 @@ namespace clerestory {
 /// How much of a light a point sees.
 enum class LightSeen : std::uint8_t { none, part, all };
 
-/// The sun or a luminaire, as a disc or an opening with a rim. Images in mirrors are none: their light has other edges,
-/// those of the mirror.
+/// The sun or a luminaire, or the image of one, as a disc or an opening with a rim.
 class SharpLight {
  public:
   SharpLight(const Problem& problem, const PlacedSun& sun) : problem_(&problem), sun_(&sun) {}
@@ -20,20 +20,26 @@ class SharpLight {
 
   /// What it gives at p on a plane of normal n where nothing blocks, luminous mean [W/m2].
   double open_irradiance(const Vec3& p, const Vec3& n) const;
-  /// Segment to its centre, from p on a surface of normal n; both ends lifted.
-  void segment(const Vec3& p, const Vec3& n, Vec3& from, Vec3& to) const;
-  bool sees_centre(const Vec3& p, const Vec3& n) const;
+  /// From which of up to 16 points on a surface of normal n its centre is seen: a bit each.
+  std::uint16_t see_centre(std::span<const Vec3> points, const Vec3& n) const;
+  bool sees_centre(const Vec3& p, const Vec3& n) const { return see_centre({&p, 1}, n) != 0; }
   /// By sixteen rays to its rim, one where it is a point: its width is known to 2 %.
   LightSeen seen(const Vec3& p, const Vec3& n) const;
 
  private:
-  Vec3 rim(const Vec3& p, int k) const;
+  struct Segment {
+    Vec3 from, to;
+  };
+  Segment to_centre(const Vec3& p, const Vec3& n) const;
+  Segment to_rim(const Vec3& p, const Vec3& n, int k) const;
+  std::uint16_t free(std::span<const Segment> segments) const;
+
   const Problem* problem_;
   const PlacedSun* sun_ = nullptr;
   const PlacedLuminaire* luminaire_ = nullptr;
 };
 
-/// All of a problem's lights that shadows may have edges of, suns first.
+/// All of a problem's suns and luminaires, suns first.
 std::vector<SharpLight> sharp_lights(const Problem& problem);
 
 }  // namespace clerestory

@@ -9,7 +9,7 @@ namespace {
 bool is_small(const ElementTree& tree, std::uint32_t v) {
   if (tree.leaf_end(v) - tree.first_leaf(v) > kMostMembers) return false;
   for (std::uint32_t below = v; below < tree.end[v]; ++below)
-    if (!tree.is_leaf(below) && !tree.cluster[below]) return false;
+    if (!tree.is_leaf(below) && !tree.cluster[below] && !tree.cut[below]) return false;
   return true;
 }
 

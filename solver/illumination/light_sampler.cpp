@@ -30,18 +30,21 @@ double cross_section(const RayScene& rays) { return std::numbers::pi / 4 * rays.
 
 }  // namespace
 
-double area_median(const PatchSet& patches, const Field& glow) {
+double area_median(const PatchSet& patches, const Field& glow, const std::vector<bool>& counts) {
   // The bits of a positive float order like its value: three passes over histograms of 11, 11 and 10 of them need no
   // memory.
   const auto bits = [&](std::size_t i) {
     return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(luminous_mean(glow[i]), 0.0)));
   };
-  double half = patches.total_area() / 2;
+  const auto area_of = [&](std::size_t i) { return counts.empty() || counts[i] ? patches.area[i] : 0; };
+  double half = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) half += area_of(i);
+  half /= 2;
   std::uint32_t found = 0, known = 0;
   for (const int shift : {21, 10, 0}) {
     std::vector<double> area(2048, 0.0);
     for (std::size_t i = 0; i < patches.patch_count(); ++i)
-      if (const std::uint32_t b = bits(i); (b & known) == found) area[(b >> shift) & 2047] += patches.area[i];
+      if (const std::uint32_t b = bits(i); (b & known) == found) area[(b >> shift) & 2047] += area_of(i);
     std::uint32_t bin = 0, last = 0;
     for (; bin < area.size() && half > 0; ++bin)
       if (area[bin] > 0) {
@@ -64,7 +67,8 @@ LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_
   const double bright = kBrighter * area_median(patches, glow);
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {
     const double B = luminous_mean(glow[i]), flux = B * patches.area[i];
-    if (!(B > bright) || !(flux > 0)) continue;
+    const bool is_spot = !patches.spot.empty() && patches.spot[i];
+    if (!(B > bright || is_spot) || !(flux > 0)) continue;
     if (bright_.empty()) number_of_patch_.assign(patches.patch_count(), LightTree::kNone);
     number_of_patch_[i] = static_cast<std::uint32_t>(bright_.size());
     bright_.push_back(static_cast<std::uint32_t>(i));

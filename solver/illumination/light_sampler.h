@@ -15,8 +15,8 @@ namespace clerestory {
 inline constexpr double kBrighter = 4;
 
 /// Half of the area of all patches has no more of x (N x channels, >= 0) than this: luminous mean, to the precision of
-/// float.
-double area_median(const PatchSet& patches, const Field& x);
+/// float. counts: N, which of them; empty: all.
+double area_median(const PatchSet& patches, const Field& x, const std::vector<bool>& counts = {});
 
 /// One point of a light, as seen from where its light is asked for.
 struct LightSample {

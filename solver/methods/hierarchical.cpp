@@ -108,6 +108,20 @@ Field above_ground(const PatchSet& leaves, const Field& B, const Round& round) {
   return above;
 }
 
+/// Leaves that mostly look at others, and have most of their light from the sun or luminaires, many times what is usual
+/// among such: a facade in the sun, or a ground, must not hide the sun's patch in the room behind it.
+std::vector<bool> spots(const PatchSet& leaves, const Field& B, const Field& delta_light,
+                        const std::vector<float>& arrives) {
+  std::vector<bool> indoors(leaves.patch_count()), spot(leaves.patch_count());
+  for (std::size_t i = 0; i < indoors.size(); ++i) indoors[i] = arrives[i] > 0.5f;
+  const double bright = kBrighter * area_median(leaves, B, indoors);
+  for (std::size_t i = 0; i < spot.size(); ++i) {
+    const double sent = luminous_mean(B[i]);
+    spot[i] = indoors[i] && sent > bright && luminous_mean(leaves.scattered(delta_light, i)) > 0.5 * sent;
+  }
+  return spot;
+}
+
 /// Faces that fit into this are no receivers of their own [m].
 double receiver_size(const PatchSet& patches, double shortest_edge) {
   const double n = static_cast<double>(std::max<std::size_t>(patches.patch_count(), 1));
@@ -190,6 +204,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   s.links = transport.link_count();
   s.log = {round_line(name, s, n, transport.receiver_count())};
   if (options.debug) view_round(light, tree, transport, quality.links, s, *options.debug);
+  out.elements.spot = spots(leaves, s.B, out.delta_light, transport.arrives);
   round.space = std::move(transport.space);
   round.spaces = transport.spaces;
   round.complete = true;

@@ -131,9 +131,13 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
   correct_flux(coarse, solution.E, mesh, field);
   fill_unknown(mesh, transport_leaves, coarse.elements, solution.E, field);
+  std::vector<bool> spot;
+  for (std::size_t j = 0; j < coarse.elements.spot.size(); ++j)
+    spot.insert(spot.end(), mesh.leaves_under(transport_leaves[j]), coarse.elements.spot[j]);
   coarse.elements = {};  // a million of them are a third of a gigabyte
   solution.E = field_on_leaves(mesh, transport_leaves, coarse, field);
   HierarchicalField out{mesh.leaf_patches(), std::move(mesh).leaf_lightmap(), {}};
+  out.elements.spot = std::move(spot);
   out.lightmap.E = std::move(field.E);
   solution.B = Field(out.elements.patch_count(), out.elements.channels);
   for (std::size_t i = 0; i < out.elements.patch_count(); ++i)

@@ -10,6 +10,7 @@
 #include "solver/model/assert.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
+#include "solver/sampling/packed_direction.h"
 #include "solver/sampling/polygon_view.h"
 #include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
@@ -46,7 +47,7 @@ class View {
       values[k] = Spectrum(0.0);
       if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
       if (hit.escaped()) {
-        values[k] = light_.sky(hit.direction(rays[k])) * kPi * hit.transmittance;
+        values[k] = light_.sky(on_grid(hit.direction(rays[k]))) * kPi * hit.transmittance;
       } else if (hit.patch.valid()) {
         Spectrum back = light_.sampler.glow()[hit.patch];
         if (owner == kNobody && bright_rays_ > 0)

@@ -1,7 +1,6 @@
 #include "solver/hierarchy/balance.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "solver/hierarchy/gather_links.h"
 #include "solver/model/assert.h"
@@ -15,23 +14,48 @@ constexpr int kMostSweeps = 1'000;  // safety net; reaching it sets StopReason::
 
 class System {
  public:
-  System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& E_direct,
-         Field first_guess)
-      : B(std::move(first_guess)), p_(patches), tree_(tree), transport_(transport), n_(patches.patch_count()) {
-    source_ = FB = r_ = albedo_ = F_albedo_ = lost_ = Field(n_, p_.channels);
+  System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& M,
+         const Field& E_direct, Field first_guess)
+      : B(std::move(first_guess)),
+        p_(patches),
+        tree_(tree),
+        transport_(transport),
+        n_(patches.patch_count()),
+        channels_(static_cast<std::size_t>(patches.channels)),
+        lanes_(static_cast<std::size_t>(E_direct.channels)) {
+    source_ = FB = r_ = Field(n_, E_direct.channels);
+    albedo_ = F_albedo_ = lost_ = Field(n_, p_.channels);
+    scale_.resize(lanes_);
     for (std::size_t i = 0; i < n_; ++i) {
-      source_.set(i, p_.M[i] + p_.scattered(E_direct, i));
       albedo_.set(i, p_.albedo(i));
-      scale_ += p_.area[i] * (p_.M[i] + E_direct[i]);
+      for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
+        source_.value[k] = M.value[k] + scattered(E_direct, i, l, c);
+        scale_[l] += p_.area[i] * (M.value[k] + E_direct.value[k]);
+      });
     }
-    if (B.size() != n_ || B.channels != p_.channels) B = source_;
+    if (B.size() != n_ || B.channels != E_direct.channels) B = source_;
     gather(albedo_, F_albedo_);
-    ambient_loss_.resize(transport.spaces);
+    ambient_loss_.resize(transport.spaces * channels_);
     for (std::size_t i = 0; i < n_; ++i) {
       lost_.set(i, albedo_[i] - p_.scattered(F_albedo_, i));
-      ambient_loss_[transport.space[i]] += p_.area[i] * lost_[i];
+      for (std::size_t c = 0; c < channels_; ++c)
+        ambient_loss_[transport.space[i] * channels_ + c] += p_.area[i] * lost_.value[i * channels_ + c];
     }
     update();
+  }
+
+  /// Calls visit(lane, its place in fields of lanes, the place of its channel in fields of channels) at leaf i.
+  template <class Visit>
+  void for_lanes(std::size_t i, const Visit& visit) const {
+    for (std::size_t l = 0; l < lanes_; l += channels_)
+      for (std::size_t c = 0; c < channels_; ++c) visit(l + c, i * lanes_ + l + c, i * channels_ + c);
+  }
+  /// PatchSet::scattered() of one lane; c: the place of its channel.
+  double scattered(const Field& E, std::size_t i, std::size_t lane, std::size_t c) const {
+    double out = p_.rho.value[c] * E.value[i * lanes_ + lane];
+    for (const PatchSet::Behind& other : p_.patches_behind(i))
+      out += p_.tau.value[c] * E.value[other.patch * lanes_ + lane] * other.share;
+    return out;
   }
 
   void sweep() {
@@ -39,12 +63,12 @@ class System {
     update();
   }
   double residual() const {
-    Spectrum left;
+    std::vector<double> left(lanes_);
     for (std::size_t i = 0; i < n_; ++i)
-      left += p_.area[i] * Spectrum(std::abs(r_[i][0]), std::abs(r_[i][1]), std::abs(r_[i][2]));
+      for (std::size_t l = 0; l < lanes_; ++l) left[l] += p_.area[i] * std::abs(r_.value[i * lanes_ + l]);
     double worst = 0;
-    for (int c = 0; c < p_.channels; ++c)
-      if (scale_[c] > 0) worst = std::max(worst, left[c] / scale_[c]);
+    for (std::size_t l = 0; l < lanes_; ++l)
+      if (scale_[l] > 0) worst = std::max(worst, left[l] / scale_[l]);
     return worst;
   }
 
@@ -57,42 +81,51 @@ class System {
   }
   void update() {
     gather(B, FB);
-    std::vector<Spectrum> e(transport_.spaces);
+    std::vector<double> e(transport_.spaces * lanes_);
     for (std::size_t i = 0; i < n_; ++i) {
-      r_.set(i, source_[i] + p_.scattered(FB, i) - B[i]);
-      e[transport_.space[i]] += p_.area[i] * r_[i];
+      double* e_i = e.data() + transport_.space[i] * lanes_;
+      for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
+        r_.value[k] = source_.value[k] + scattered(FB, i, l, c) - B.value[k];
+        e_i[l] += p_.area[i] * r_.value[k];
+      });
     }
-    for (std::size_t s = 0; s < e.size(); ++s)
-      for (int c = 0; c < kMaxChannels; ++c) e[s][c] = ambient_loss_[s][c] > 0 ? e[s][c] / ambient_loss_[s][c] : 0;
+    for (std::size_t k = 0; k < e.size(); ++k) {
+      const double loss = ambient_loss_[k / lanes_ * channels_ + k % lanes_ % channels_];
+      e[k] = loss > 0 ? e[k] / loss : 0;
+    }
     for (std::size_t i = 0; i < n_; ++i) {
-      const Spectrum e_i = e[transport_.space[i]];
-      B.add(i, e_i * albedo_[i]);
-      FB.add(i, e_i * F_albedo_[i]);
-      r_.set(i, r_[i] - e_i * lost_[i]);
+      const double* e_i = e.data() + transport_.space[i] * lanes_;
+      for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
+        B.value[k] += e_i[l] * albedo_.value[c];
+        FB.value[k] += e_i[l] * F_albedo_.value[c];
+        r_.value[k] -= e_i[l] * lost_.value[c];
+      });
     }
   }
 
   const PatchSet& p_;
   const ElementTree& tree_;
   const Transport& transport_;
-  std::size_t n_;
-  Field source_, r_, nodes_;
-  Field albedo_, F_albedo_, lost_;  ///< lost: albedo less what comes back of it
-  Spectrum scale_;
-  std::vector<Spectrum> ambient_loss_;  ///< by space: sum A lost [m2]
+  std::size_t n_, channels_, lanes_;
+  Field source_, r_, nodes_;          ///< by lane
+  Field albedo_, F_albedo_, lost_;    ///< by channel; lost: albedo less what comes back of it
+  std::vector<double> scale_;         ///< by lane
+  std::vector<double> ambient_loss_;  ///< by space and channel: sum A lost [m2]
 };
+
+/// Lanes of one right-hand side as a spectrum.
+Spectrum spectrum(const Field& x, std::size_t i, std::size_t first, int channels) {
+  const double* at = x.value.data() + i * static_cast<std::size_t>(x.channels) + first;
+  return channels == 1 ? Spectrum(at[0]) : Spectrum(at[0], at[1], at[2]);
+}
 
 }  // namespace
 
-Solution balance(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& E_direct,
-                 Field B, double residual, const Monitor& monitor) {
-  Solution s;
-  System system(patches, tree, transport, E_direct, std::move(B));
-  const auto log = [&] {
-    char line[80];
-    std::snprintf(line, sizeof line, "sweep %ld, residual %.2g", s.iterations, s.residual);
-    s.log.push_back(line);
-  };
+Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& M,
+                 const Field& E_direct, Field B, double residual, const Monitor& monitor) {
+  CLERESTORY_ASSERT(M.channels, ==, E_direct.channels);
+  Balanced s;
+  System system(patches, tree, transport, M, E_direct, std::move(B));
   for (s.residual = system.residual(); s.residual > residual; s.residual = system.residual()) {
     if (s.iterations == kMostSweeps) s.stop = StopReason::iteration_limit;
     if (monitor.should_stop()) s.stop = why_stopped(monitor);
@@ -100,17 +133,21 @@ Solution balance(const PatchSet& patches, const ElementTree& tree, const Transpo
     system.sweep();
     ++s.iterations;
   }
-  log();
   CLERESTORY_ASSERT(all_finite(system.FB), ==, true);
 
   const std::size_t n = patches.patch_count();
-  s.E = s.B = Field(n, patches.channels);
-  for (std::size_t i = 0; i < n; ++i) s.E.set(i, E_direct[i] + system.FB[i]);
+  const auto lanes = static_cast<std::size_t>(E_direct.channels), channels = static_cast<std::size_t>(patches.channels);
+  s.E = s.B = Field(n, E_direct.channels);
+  s.energy.resize(lanes / channels);
+  for (std::size_t k = 0; k < s.E.value.size(); ++k) s.E.value[k] = E_direct.value[k] + system.FB.value[k];
   for (std::size_t i = 0; i < n; ++i) {
-    const Spectrum radiosity = patches.M[i] + patches.scattered(s.E, i);
-    s.B.set(i, radiosity);
+    system.for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
+      s.B.value[k] = M.value[k] + system.scattered(s.E, i, l, c);
+    });
     const Losses on_its_way = losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
-    s.energy += where_light_ends(patches, i, s.E[i], radiosity, on_its_way);
+    for (std::size_t k = 0; k < s.energy.size(); ++k)
+      s.energy[k] += where_light_ends(patches, i, spectrum(s.E, i, k * channels, patches.channels),
+                                      spectrum(s.B, i, k * channels, patches.channels), on_its_way);
   }
   return s;
 }

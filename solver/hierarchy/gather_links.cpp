@@ -10,9 +10,12 @@
 namespace clerestory {
 namespace {
 
-template <std::size_t C>
-void gather_block(const LinkBlock& block, const ElementTree& tree, const double* nodes, double* E) {
-  for (std::uint32_t l = block.first_leaf; l < block.leaf_end; ++l) std::fill_n(E + C * tree.patch[l], C, 0.0);
+/// Lanes first ... first + C - 1 of `all`; those of a node lie side by side. Stride: `all` where it is known
+/// beforehand.
+template <std::size_t C, std::size_t Stride = 0>
+void gather_block(const LinkBlock& block, const ElementTree& tree, const double* nodes, double* E, std::size_t all) {
+  const std::size_t stride = Stride > 0 ? Stride : all;
+  for (std::uint32_t l = block.first_leaf; l < block.leaf_end; ++l) std::fill_n(E + stride * tree.patch[l], C, 0.0);
   std::size_t link = 0, row = 0;
   const float* share = block.shares.data();
   for (const Receiver& r : block.receivers)
@@ -20,13 +23,21 @@ void gather_block(const LinkBlock& block, const ElementTree& tree, const double*
       std::array<double, C> sum{};
       for (const std::size_t last = block.row_end[row]; link < last; ++link) {
         const auto [source, weight] = block.links[link];
-        for (std::size_t c = 0; c < C; ++c) sum[c] += double{weight} * nodes[C * source + c];
+        for (std::size_t c = 0; c < C; ++c) sum[c] += double{weight} * nodes[stride * source + c];
       }
       for (std::uint32_t l = r.first_leaf; l < r.leaf_end; ++l) {
         const double part = r.hands_down ? double{*share++} : 1.0;
-        for (std::size_t c = 0; c < C; ++c) E[C * tree.patch[l] + c] += part * sum[c];
+        for (std::size_t c = 0; c < C; ++c) E[stride * tree.patch[l] + c] += part * sum[c];
       }
     }
+}
+
+/// Any number of lanes, eight at a time: a cache line of each node. What they sum to does not depend on their company.
+void gather_lanes(const LinkBlock& block, const ElementTree& tree, const double* nodes, double* E, std::size_t all) {
+  std::size_t first = 0;
+  for (; first + 8 <= all; first += 8) gather_block<8>(block, tree, nodes + first, E + first, all);
+  for (; first + 4 <= all; first += 4) gather_block<4>(block, tree, nodes + first, E + first, all);
+  for (; first < all; ++first) gather_block<1>(block, tree, nodes + first, E + first, all);
 }
 
 }  // namespace
@@ -52,13 +63,14 @@ void pull(const ElementTree& tree, const Field& leaves, Field& nodes) {
 }
 
 void gather_and_push(const Transport& transport, const ElementTree& tree, const Field& nodes, Field& E) {
+  const auto lanes = static_cast<std::size_t>(nodes.channels);
+  const auto gather = lanes == 1   ? gather_block<1, 1>
+                      : lanes == 3 ? gather_block<3, 3>
+                      : lanes == 8 ? gather_block<8, 8>
+                                   : gather_lanes;
   parallel_for(transport.blocks.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      if (nodes.channels == 1)
-        gather_block<1>(transport.blocks[b], tree, nodes.value.data(), E.value.data());
-      else
-        gather_block<3>(transport.blocks[b], tree, nodes.value.data(), E.value.data());
-    }
+    for (std::size_t b = begin; b < end; ++b)
+      gather(transport.blocks[b], tree, nodes.value.data(), E.value.data(), lanes);
   });
 }
 

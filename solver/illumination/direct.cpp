@@ -11,6 +11,7 @@
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
+#include "solver/sampling/packed_direction.h"
 #include "solver/sampling/polygon_view.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/visibility/shadow_rays.h"
@@ -202,8 +203,13 @@ Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, double far_aw
 constexpr std::size_t kMostOpenings = 4;  ///< over a patch
 constexpr int kRaysOfOpening = 32;        ///< through each opening that matters
 
-/// Light of the sky through some openings, from points all over the patch. looked_at: those that a few rays found to
-/// show sky; light through the others is left to bundles.
+struct Through {
+  Spectrum E{0.0};   ///< mean irradiance [W/m2]
+  bool any = false;  ///< whether any ray left the scene
+};
+
+/// Light of the sky through some openings, from points all over the patch. looked_at: those that any of a few rays left
+/// by, whatever the sky there; light through the others is left to bundles.
 Spectrum through_openings(const Illumination& light, std::size_t patch, const DirectOptions& options,
                           std::vector<std::uint32_t>& looked_at) {
   constexpr int kPilotRays = 8;
@@ -219,7 +225,7 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
   over.erase(std::unique(over.begin(), over.end()), over.end());
 
   const auto look = [&](std::uint32_t number, std::uint64_t key, int count) {
-    Spectrum sum(0.0);
+    Through found;
     for (int k = 0; k < count; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 p = point_on_triangle(corners, u[0], u[1]) + n * problem.rays.lift();
@@ -228,19 +234,22 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
       const auto [d, solid_angle] = polygon.look(u[2], u[3]);
       const Hit hit = problem.rays.first_hit(problem.patches, {p, d});
       if (!hit.escaped() || first_way_out(openings, looked_at, p, d, hit.first) != number) continue;
-      sum += light.sky(hit.direction({p, d})) * hit.transmittance * (std::max(0.0, dot(d, n)) * solid_angle);
+      const Vec3 sky = on_grid(hit.direction({p, d}));
+      found.E += light.sky(sky) * hit.transmittance * (std::max(0.0, dot(d, n)) * solid_angle);
+      found.any = true;
     }
-    return sum / count;
+    found.E *= 1.0 / count;
+    return found;
   };
   const std::uint64_t key = stream_key(options.seed, kOpeningRaysOfPatch, patch);
   std::vector<std::uint32_t> seen;
   for (const std::uint32_t k : over) {
     looked_at = {k};
-    if (!look(k, stream_key(key, k + 1), kPilotRays).is_black()) seen.push_back(k);
+    if (look(k, stream_key(key, k + 1), kPilotRays).any) seen.push_back(k);
   }
   looked_at = seen;
   Spectrum E(0.0);
-  for (const std::uint32_t k : looked_at) E += look(k, mix_bits(stream_key(key, k)), kRaysOfOpening);
+  for (const std::uint32_t k : looked_at) E += look(k, mix_bits(stream_key(key, k)), kRaysOfOpening).E;
   return E;
 }
 

@@ -12,6 +12,7 @@
 #include "solver/hierarchy/build_tree.h"
 #include "solver/hierarchy/debug_view.h"
 #include "solver/hierarchy/refine.h"
+#include "solver/hierarchy/sky_views.h"
 #include "solver/hierarchy/trace_links.h"
 #include "solver/illumination/direct.h"
 #include "solver/methods/progressive.h"
@@ -152,6 +153,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
+  quality.links.sky_views = !light.sky.dark();
   Transport transport;
   if (options.oracle == Oracle::error) {
     transport = trace_links(light, tree, before ? glow : Field{}, direct, quality.links, monitor);
@@ -171,17 +173,22 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
 
   out.delta_light = direct.E;
   Field E_direct = direct.E;
-  const bool looks_through = quality.direct.sky_rays == 0 && !direct.E_openings.value.empty();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Spectrum sky = looks_through ? transport.E_sky[i] + direct.E_openings[i] : transport.E_sky[i];
-    E_direct.add(i, sky);
+  double sky_flux = 0;
+  if (!light.sky.dark() && quality.direct.sky_rays == 0) {
+    const SkyRadiance* const sky = &light.sky;
+    Field E_sky = sky_irradiance(leaves, tree, transport, {&sky, 1});
+    for (std::size_t k = 0; k < direct.E_openings.value.size(); ++k) E_sky.value[k] += direct.E_openings.value[k];
+    for (std::size_t k = 0; k < E_sky.value.size(); ++k) E_direct.value[k] += E_sky.value[k];
+    sky_flux = total_flux(leaves, E_sky);
   }
   monitor.report("gather", 0);
   Solution& s = out.solution;
-  s = balance(leaves, tree, transport, E_direct, std::move(guess), quality.residual, monitor);
+  Balanced balanced = balance(leaves, tree, transport, leaves.M, E_direct, std::move(guess), quality.residual, monitor);
+  s.E = std::move(balanced.E), s.B = std::move(balanced.B);
+  s.energy = balanced.energy[0];
+  s.stop = balanced.stop, s.iterations = balanced.iterations, s.residual = balanced.residual;
   s.method = "hierarchical";
-  s.energy.emitted += total_flux(leaves, leaves.M) + total_flux(leaves, transport.E_sky);
-  if (looks_through) s.energy.emitted += total_flux(leaves, direct.E_openings);
+  s.energy.emitted += total_flux(leaves, leaves.M) + sky_flux;
   s.energy += direct.energy;
   s.rays = direct.rays + transport.rays;
   s.clusters = tree.clusters;

@@ -1,8 +1,12 @@
 #include "solver/hierarchy/balance.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "solver/hierarchy/gather_links.h"
+#include "solver/illumination/light_rows.h"
 #include "solver/model/assert.h"
 #include "solver/model/units.h"
 #include "solver/spaces/energy.h"
@@ -12,111 +16,182 @@ namespace {
 
 constexpr int kMostSweeps = 1'000;  // safety net; reaching it sets StopReason::iteration_limit
 
+/// L lanes of the right-hand sides, from lane `first` on. Beyond their number lanes are dark.
+///
+/// One and three lanes gather all of B in every sweep. Eight gather what the last sweep added to it: in floats, which
+/// are exact enough for what gets less and less, but would keep the residual of B from vanishing.
+template <std::size_t L>
 class System {
  public:
   System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& M,
-         const Field& E_direct, Field first_guess)
-      : B(std::move(first_guess)),
-        p_(patches),
-        tree_(tree),
+         const Field& E_direct, const Field& first_guess, std::size_t first)
+      : p_(patches),
         transport_(transport),
         n_(patches.patch_count()),
-        channels_(static_cast<std::size_t>(patches.channels)),
-        lanes_(static_cast<std::size_t>(E_direct.channels)) {
-    source_ = FB = r_ = Field(n_, E_direct.channels);
-    albedo_ = F_albedo_ = lost_ = Field(n_, p_.channels);
-    scale_.resize(lanes_);
+        first_(first),
+        count_(std::min(L, static_cast<std::size_t>(E_direct.channels) - first)),
+        gather_(tree, transport),
+        source_(n_),
+        B_(n_),
+        FB_(n_),
+        r_(n_) {
+    const auto channels = static_cast<std::size_t>(p_.channels);
+    for (std::size_t l = 0; l < L; ++l) channel_[l] = (first + l) % channels;
+    const auto lanes = static_cast<std::size_t>(E_direct.channels);
+    const auto load = [&](const Field& from, std::size_t i) {
+      Lanes<L> x;
+      std::copy_n(from.value.data() + i * lanes + first_, count_, x.lane.data());
+      return x;
+    };
+    for (std::size_t i = 0; i < n_; ++i) FB_[i] = load(E_direct, i);
     for (std::size_t i = 0; i < n_; ++i) {
-      albedo_.set(i, p_.albedo(i));
-      for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
-        source_.value[k] = M.value[k] + scattered(E_direct, i, l, c);
-        scale_[l] += p_.area[i] * (M.value[k] + E_direct.value[k]);
-      });
+      const Lanes<L> emitted = load(M, i), scatters = scattered(FB_, i);
+      for (std::size_t l = 0; l < L; ++l) {
+        source_[i].lane[l] = emitted.lane[l] + scatters.lane[l];
+        scale_.lane[l] += p_.area[i] * (emitted.lane[l] + FB_[i].lane[l]);
+      }
     }
-    if (B.size() != n_ || B.channels != E_direct.channels) B = source_;
-    gather(albedo_, F_albedo_);
-    ambient_loss_.resize(transport.spaces * channels_);
-    for (std::size_t i = 0; i < n_; ++i) {
-      lost_.set(i, albedo_[i] - p_.scattered(F_albedo_, i));
-      for (std::size_t c = 0; c < channels_; ++c)
-        ambient_loss_[transport.space[i] * channels_ + c] += p_.area[i] * lost_.value[i * channels_ + c];
+    if (first_guess.size() == n_ && first_guess.channels == E_direct.channels)
+      for (std::size_t i = 0; i < n_; ++i) B_[i] = load(first_guess, i);
+    else
+      B_ = source_;
+    if constexpr (kBySteps) {  // from B = 0: what is missing is all that is sent
+      r_.swap(source_);
+      FB_.assign(n_, {});
     }
+    find_losses(tree);
     update();
   }
 
-  /// Calls visit(lane, its place in fields of lanes, the place of its channel in fields of channels) at leaf i.
-  template <class Visit>
-  void for_lanes(std::size_t i, const Visit& visit) const {
-    for (std::size_t l = 0; l < lanes_; l += channels_)
-      for (std::size_t c = 0; c < channels_; ++c) visit(l + c, i * lanes_ + l + c, i * channels_ + c);
-  }
-  /// PatchSet::scattered() of one lane; c: the place of its channel.
-  double scattered(const Field& E, std::size_t i, std::size_t lane, std::size_t c) const {
-    double out = p_.rho.value[c] * E.value[i * lanes_ + lane];
-    for (const PatchSet::Behind& other : p_.patches_behind(i))
-      out += p_.tau.value[c] * E.value[other.patch * lanes_ + lane] * other.share;
-    return out;
-  }
+  void sweep() { update(); }
 
-  void sweep() {
-    for (std::size_t k = 0; k < B.value.size(); ++k) B.value[k] += r_.value[k];
-    update();
-  }
   double residual() const {
-    std::vector<double> left(lanes_);
-    for (std::size_t i = 0; i < n_; ++i)
-      for (std::size_t l = 0; l < lanes_; ++l) left[l] += p_.area[i] * std::abs(r_.value[i * lanes_ + l]);
     double worst = 0;
-    for (std::size_t l = 0; l < lanes_; ++l)
-      if (scale_[l] > 0) worst = std::max(worst, left[l] / scale_[l]);
+    for (std::size_t l = 0; l < L; ++l)
+      if (scale_.lane[l] > 0) worst = std::max(worst, left_.lane[l] / scale_.lane[l]);
     return worst;
   }
 
-  Field B, FB;
+  /// E += what arrives over links.
+  void add_to(Field& E) const {
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Lanes<L> comes_back = by_channel(F_albedo_, i);
+      const Lanes<L>& e = e_[transport_.space[i]];
+      for (std::size_t l = 0; l < count_; ++l)
+        E.value[i * static_cast<std::size_t>(E.channels) + first_ + l] +=
+            FB_[i].lane[l] + e.lane[l] * comes_back.lane[l];
+    }
+  }
 
  private:
-  void gather(const Field& leaves, Field& E) {
-    pull(tree_, leaves, nodes_);
-    gather_and_push(transport_, tree_, nodes_, E);
+  Lanes<L> by_channel(const Field& x, std::size_t i) const {
+    Lanes<L> out;
+    const double* at = x.value.data() + i * static_cast<std::size_t>(x.channels);
+    if (x.channels == 1)
+      for (std::size_t l = 0; l < L; ++l) out.lane[l] = at[0];
+    else
+      for (std::size_t l = 0; l < L; ++l) out.lane[l] = at[channel_[l]];
+    return out;
   }
+  /// PatchSet::scattered()
+  Lanes<L> scattered(const std::vector<Lanes<L>>& E, std::size_t i) const {
+    Lanes<L> out = by_channel(p_.rho, i);
+    const Lanes<L> here = E[i];
+    for (std::size_t l = 0; l < L; ++l) out.lane[l] *= here.lane[l];
+    for (const PatchSet::Behind& other : p_.patches_behind(i)) {
+      const Lanes<L> tau = by_channel(p_.tau, i);
+      for (std::size_t l = 0; l < L; ++l) out.lane[l] += tau.lane[l] * E[other.patch].lane[l] * other.share;
+    }
+    return out;
+  }
+
+  /// What is lost of an ambient irradiance of 1 in each space, by channel.
+  void find_losses(const ElementTree& tree) {
+    albedo_ = F_albedo_ = lost_ = Field(n_, p_.channels);
+    for (std::size_t i = 0; i < n_; ++i) albedo_.set(i, p_.albedo(i));
+    Field nodes;
+    pull(tree, albedo_, nodes);
+    gather_and_push(transport_, tree, nodes, F_albedo_);
+    ambient_loss_.resize(transport_.spaces);
+    for (std::size_t i = 0; i < n_; ++i) {
+      lost_.set(i, albedo_[i] - p_.scattered(F_albedo_, i));
+      ambient_loss_[transport_.space[i]] += p_.area[i] * lost_[i];
+    }
+  }
+
+  /// From B: what arrives, what is left of the residual after the ambient irradiance, and B of the next sweep.
   void update() {
-    gather(B, FB);
-    std::vector<double> e(transport_.spaces * lanes_);
+    std::vector<Lanes<L>>& arrives = kBySteps ? source_ : FB_;
+    gather_(B_, arrives);
+    e_.assign(transport_.spaces, {});
     for (std::size_t i = 0; i < n_; ++i) {
-      double* e_i = e.data() + transport_.space[i] * lanes_;
-      for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
-        r_.value[k] = source_.value[k] + scattered(FB, i, l, c) - B.value[k];
-        e_i[l] += p_.area[i] * r_.value[k];
-      });
+      const Lanes<L> leaves = scattered(arrives, i), B = B_[i];
+      const double area = p_.area[i];
+      Lanes<L> r = kBySteps ? r_[i] : source_[i], e = e_[transport_.space[i]];
+      for (std::size_t l = 0; l < L; ++l) r.lane[l] = r.lane[l] + leaves.lane[l] - B.lane[l];
+      for (std::size_t l = 0; l < L; ++l) e.lane[l] += area * r.lane[l];
+      r_[i] = r;
+      e_[transport_.space[i]] = e;
+      if constexpr (kBySteps) {
+        Lanes<L> FB = FB_[i];
+        const Lanes<L> more = arrives[i];
+        for (std::size_t l = 0; l < L; ++l) FB.lane[l] += more.lane[l];
+        FB_[i] = FB;
+      }
     }
-    for (std::size_t k = 0; k < e.size(); ++k) {
-      const double loss = ambient_loss_[k / lanes_ * channels_ + k % lanes_ % channels_];
-      e[k] = loss > 0 ? e[k] / loss : 0;
-    }
+    for (std::size_t s = 0; s < e_.size(); ++s)
+      for (std::size_t l = 0; l < L; ++l) {
+        const double loss = ambient_loss_[s].c[channel_[l]];
+        e_[s].lane[l] = loss > 0 ? e_[s].lane[l] / loss : 0;
+      }
+    Lanes<L> left;
     for (std::size_t i = 0; i < n_; ++i) {
-      const double* e_i = e.data() + transport_.space[i] * lanes_;
-      for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
-        B.value[k] += e_i[l] * albedo_.value[c];
-        FB.value[k] += e_i[l] * F_albedo_.value[c];
-        r_.value[k] -= e_i[l] * lost_.value[c];
-      });
+      const Lanes<L> albedo = by_channel(albedo_, i), lost = by_channel(lost_, i), e = e_[transport_.space[i]];
+      const double area = p_.area[i];
+      Lanes<L> r = r_[i], B = kBySteps ? Lanes<L>{} : B_[i];
+      for (std::size_t l = 0; l < L; ++l) r.lane[l] -= e.lane[l] * lost.lane[l];
+      for (std::size_t l = 0; l < L; ++l) left.lane[l] += area * std::abs(r.lane[l]);
+      for (std::size_t l = 0; l < L; ++l) B.lane[l] = B.lane[l] + e.lane[l] * albedo.lane[l] + r.lane[l];
+      B_[i] = B;
     }
+    left_ = left;
   }
+
+  static constexpr bool kBySteps = L == 8;
 
   const PatchSet& p_;
-  const ElementTree& tree_;
   const Transport& transport_;
-  std::size_t n_, channels_, lanes_;
-  Field source_, r_, nodes_;          ///< by lane
-  Field albedo_, F_albedo_, lost_;    ///< by channel; lost: albedo less what comes back of it
-  std::vector<double> scale_;         ///< by lane
-  std::vector<double> ambient_loss_;  ///< by space and channel: sum A lost [m2]
+  std::size_t n_, first_, count_;
+  std::array<std::size_t, L> channel_;  ///< of each lane
+  LinkGather<L> gather_;
+  std::vector<Lanes<L>> source_;        ///< by steps: what arrives of B_
+  std::vector<Lanes<L>> B_;             ///< by steps: what was added to B last
+  std::vector<Lanes<L>> FB_, r_;        ///< all that arrives; M + rho E - B before the ambient irradiance e
+  Field albedo_, F_albedo_, lost_;      ///< by channel; lost: albedo less what comes back of it
+  std::vector<Spectrum> ambient_loss_;  ///< by space: sum A lost [m2]
+  Lanes<L> scale_, left_;
+  std::vector<Lanes<L>> e_;  ///< by space
 };
 
-/// Lanes of one right-hand side as a spectrum.
-Spectrum spectrum(const Field& x, std::size_t i, std::size_t first, int channels) {
-  const double* at = x.value.data() + i * static_cast<std::size_t>(x.channels) + first;
-  return channels == 1 ? Spectrum(at[0]) : Spectrum(at[0], at[1], at[2]);
+struct Sweeps {
+  long count = 0;
+  double residual = 0;
+  StopReason stop = StopReason::converged;
+};
+
+/// E_direct becomes E in some of its lanes.
+template <std::size_t L>
+Sweeps sweep_until(System<L> system, double residual, const Monitor& monitor, Field& E) {
+  Sweeps done;
+  for (done.residual = system.residual(); done.residual > residual; done.residual = system.residual()) {
+    if (done.count == kMostSweeps) done.stop = StopReason::iteration_limit;
+    if (monitor.should_stop()) done.stop = why_stopped(monitor);
+    if (done.stop != StopReason::converged) break;
+    system.sweep();
+    ++done.count;
+  }
+  system.add_to(E);
+  return done;
 }
 
 }  // namespace
@@ -125,29 +200,34 @@ Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transpo
                  const Field& E_direct, Field B, double residual, const Monitor& monitor) {
   CLERESTORY_ASSERT(M.channels, ==, E_direct.channels);
   Balanced s;
-  System system(patches, tree, transport, M, E_direct, std::move(B));
-  for (s.residual = system.residual(); s.residual > residual; s.residual = system.residual()) {
-    if (s.iterations == kMostSweeps) s.stop = StopReason::iteration_limit;
-    if (monitor.should_stop()) s.stop = why_stopped(monitor);
-    if (s.stop != StopReason::converged) break;
-    system.sweep();
-    ++s.iterations;
-  }
-  CLERESTORY_ASSERT(all_finite(system.FB), ==, true);
-
-  const std::size_t n = patches.patch_count();
+  s.E = E_direct;
   const auto lanes = static_cast<std::size_t>(E_direct.channels), channels = static_cast<std::size_t>(patches.channels);
-  s.E = s.B = Field(n, E_direct.channels);
+  const auto solve = [&]<std::size_t L>(std::size_t first) {
+    const Sweeps done = sweep_until(System<L>(patches, tree, transport, M, E_direct, B, first), residual, monitor, s.E);
+    s.iterations = std::max(s.iterations, done.count);
+    s.residual = std::max(s.residual, done.residual);
+    if (done.stop != StopReason::converged) s.stop = done.stop;
+  };
+  if (lanes == 1) solve.template operator()<1>(0);
+  if (lanes == 3) solve.template operator()<3>(0);
+  for (std::size_t first = 0; first < lanes && lanes != 1 && lanes != 3; first += 8)
+    solve.template operator()<8>(first);
+  B = {};
+  CLERESTORY_ASSERT(all_finite(s.E), ==, true);
+
+  s.B = Field(patches.patch_count(), E_direct.channels);
   s.energy.resize(lanes / channels);
-  for (std::size_t k = 0; k < s.E.value.size(); ++k) s.E.value[k] = E_direct.value[k] + system.FB.value[k];
-  for (std::size_t i = 0; i < n; ++i) {
-    system.for_lanes(i, [&](std::size_t l, std::size_t k, std::size_t c) {
-      s.B.value[k] = M.value[k] + system.scattered(s.E, i, l, c);
-    });
-    const Losses on_its_way = losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
-    for (std::size_t k = 0; k < s.energy.size(); ++k)
-      s.energy[k] += where_light_ends(patches, i, spectrum(s.E, i, k * channels, patches.channels),
-                                      spectrum(s.B, i, k * channels, patches.channels), on_its_way);
+  for (std::size_t k = 0; k < s.energy.size(); ++k) {
+    const bool alone = s.energy.size() == 1;
+    const Field E_of_one = alone ? Field{} : one_layer(s.E, k, patches.channels);
+    const Field M_of_one = alone ? Field{} : one_layer(M, k, patches.channels);
+    const Field& E = alone ? s.E : E_of_one;
+    for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+      const Spectrum radiosity = (alone ? M : M_of_one)[i] + patches.scattered(E, i);
+      for (std::size_t c = 0; c < channels; ++c) s.B.value[i * lanes + k * channels + c] = radiosity.c[c];
+      const Losses on_its_way = losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
+      s.energy[k] += where_light_ends(patches, i, E[i], radiosity, on_its_way);
+    }
   }
   return s;
 }

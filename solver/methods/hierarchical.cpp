@@ -123,9 +123,10 @@ std::string round_line(const char* what, const Solution& s, std::size_t leaves, 
   return line;
 }
 
-/// links -> gather -> push-pull on the leaves as they are. before: the round that came earlier, if any.
+/// links -> gather -> push-pull on the leaves as they are. before: the round that came earlier, if any; keep: null, or
+/// where its transport goes.
 Round solve_round(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options, Quality quality,
-                  const char* name, const Round* before, const Monitor& monitor) {
+                  const char* name, const Round* before, const Monitor& monitor, KeptTransport* keep = nullptr) {
   Round round;
   round.element = mesh.leaves();
   HierarchicalSolution& out = round.result;
@@ -136,7 +137,8 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
 
   if (options.oracle == Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
   quality.direct.rough_first = false;  // a round that is stopped is not returned
-  DirectLight direct = direct_light(Illumination(problem), quality.direct, monitor);
+  const DirectLight direct =
+      direct_light(Illumination(problem), quality.direct, monitor, keep ? &keep->direct : nullptr);
   if (monitor.should_stop()) return round;
   Field guess, glow;
   if (before) {
@@ -146,14 +148,14 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
     glow = leaves.M;
     for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.scattered(direct.E, i));
   }
-  const ElementTree tree = build_tree(leaves, before ? guess : glow);
+  ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
   const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
-  quality.links.sky_views = !light.sky.dark();
+  quality.links.sky_views = keep || !light.sky.dark();
   Transport transport;
   if (options.oracle == Oracle::error) {
     transport = trace_links(light, tree, before ? glow : Field{}, direct, quality.links, monitor);
@@ -195,9 +197,14 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   s.links = transport.link_count();
   s.log = {round_line(name, s, n, transport.receiver_count())};
   if (options.debug) view_round(light, tree, transport, quality.links, s, *options.debug);
-  round.space = std::move(transport.space);
   round.spaces = transport.spaces;
+  round.space = keep ? transport.space : std::move(transport.space);
   round.complete = true;
+  if (keep) {
+    keep->elements = leaves;
+    keep->tree = std::move(tree), keep->transport = std::move(transport);
+    keep->complete = true;
+  }
   return round;
 }
 
@@ -265,8 +272,8 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     if (static_cast<double>(mesh.leaf_count()) < worth_another * static_cast<double>(before)) break;
   }
   if (going)
-    going =
-        go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count()), "last round", last.get(), monitor));
+    going = go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count()), "last round", last.get(),
+                              monitor, options.keep));
 
   HierarchicalSolution out;
   if (last) {

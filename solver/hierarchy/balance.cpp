@@ -60,10 +60,15 @@ class System {
       FB_.assign(n_, {});
     }
     find_losses(tree);
-    update();
+    sweep();
   }
 
-  void sweep() { update(); }
+  /// From B: what arrives, the residual that an ambient irradiance leaves over, and B of the next sweep.
+  void sweep() {
+    gather_(B_, arrives_of_B());
+    find_ambient();
+    take_step();
+  }
 
   double residual() const {
     double worst = 0;
@@ -119,10 +124,11 @@ class System {
     }
   }
 
-  /// From B: what arrives, what is left of the residual after the ambient irradiance, and B of the next sweep.
-  void update() {
-    std::vector<Lanes<L>>& arrives = kBySteps ? source_ : FB_;
-    gather_(B_, arrives);
+  std::vector<Lanes<L>>& arrives_of_B() { return kBySteps ? source_ : FB_; }
+
+  /// The residual, and the ambient irradiance that makes it vanish in each space.
+  void find_ambient() {
+    const std::vector<Lanes<L>>& arrives = arrives_of_B();
     e_.assign(transport_.spaces, {});
     for (std::size_t i = 0; i < n_; ++i) {
       const Lanes<L> leaves = scattered(arrives, i), B = B_[i];
@@ -144,6 +150,9 @@ class System {
         const double loss = ambient_loss_[s].c[channel_[l]];
         e_[s].lane[l] = loss > 0 ? e_[s].lane[l] / loss : 0;
       }
+  }
+
+  void take_step() {
     Lanes<L> left;
     for (std::size_t i = 0; i < n_; ++i) {
       const Lanes<L> albedo = by_channel(albedo_, i), lost = by_channel(lost_, i), e = e_[transport_.space[i]];
@@ -181,7 +190,7 @@ struct Sweeps {
 
 /// E_direct becomes E in some of its lanes.
 template <std::size_t L>
-Sweeps sweep_until(System<L> system, double residual, const Monitor& monitor, Field& E) {
+Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor, Field& E) {
   Sweeps done;
   for (done.residual = system.residual(); done.residual > residual; done.residual = system.residual()) {
     if (done.count == kMostSweeps) done.stop = StopReason::iteration_limit;
@@ -203,7 +212,9 @@ Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transpo
   s.E = E_direct;
   const auto lanes = static_cast<std::size_t>(E_direct.channels), channels = static_cast<std::size_t>(patches.channels);
   const auto solve = [&]<std::size_t L>(std::size_t first) {
-    const Sweeps done = sweep_until(System<L>(patches, tree, transport, M, E_direct, B, first), residual, monitor, s.E);
+    System<L> system(patches, tree, transport, M, E_direct, B, first);
+    if (first + L >= lanes) B = {};
+    const Sweeps done = sweep_until(system, residual, monitor, s.E);
     s.iterations = std::max(s.iterations, done.count);
     s.residual = std::max(s.residual, done.residual);
     if (done.stop != StopReason::converged) s.stop = done.stop;
@@ -212,7 +223,6 @@ Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transpo
   if (lanes == 3) solve.template operator()<3>(0);
   for (std::size_t first = 0; first < lanes && lanes != 1 && lanes != 3; first += 8)
     solve.template operator()<8>(first);
-  B = {};
   CLERESTORY_ASSERT(all_finite(s.E), ==, true);
 
   s.B = Field(patches.patch_count(), E_direct.channels);

@@ -24,6 +24,7 @@ Field exitance(const PatchSet& patches, std::span<const Layer> layers) {
 
 Balanced solve_for(const KeptTransport& kept, std::span<const Layer> layers, double residual, const Monitor& monitor) {
   CLERESTORY_ASSERT(kept.complete, ==, true);
+  CLERESTORY_ASSERT(layers.size(), >, 0u);
   const PatchSet& patches = kept.elements;
   const int channels = patches.channels;
   DirectLayers direct = direct_layers(patches, kept.direct, layers);

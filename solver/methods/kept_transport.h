@@ -25,7 +25,8 @@ struct KeptTransport {
 /// Balances any number of layers at once.
 ///
 /// kept    complete.
-/// layers  each of any luminaires and suns that kept.direct knows, under any sky. Lamps that stand elsewhere want their
+/// layers  at least one, each of any luminaires and suns that kept.direct knows, under any sky. Lamps that stand
+/// elsewhere want their
 ///         own rows first: kept.direct.append() those of direct_light() with a problem of these lamps alone.
 /// returns E, B, energy of each layer [W/m2, W].
 /// Cost    no rays; eight layers of one channel balance in about the time of one.

@@ -17,7 +17,9 @@ namespace {
 HierarchicalFieldOptions options_for(std::span<const Layer> layers) {
   HierarchicalFieldOptions options;
   options.elements.shortest_edge = 0.3;
-  options.vertices = {.tolerance = 0.1, .shortest_edge = 0.2, .quality = test::gather_quality({16, 256, 512}, 32)};
+  GatherQuality quality = test::gather_quality({16, 256, 256}, 32);
+  quality.area = {.first = 1, .last = 3, .tolerance = 0.05, .most_rays = 256};  // more would only take longer
+  options.vertices = {.tolerance = 0.1, .shortest_edge = 0.2, .quality = quality};
   options.layers = layers;
   return options;
 }

@@ -49,9 +49,9 @@ class View {
       if (!found.empty()) found[k] = {};
       if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
       if (hit.escaped()) {
-        const std::uint32_t sky = pack_direction(hit.direction(rays[k]));
-        values[k] = light_.sky(unpack_direction(sky)) * kPi * hit.transmittance;
-        if (!found.empty()) found[k] = RowEntry::of_sky(sky, kPi * hit.transmittance);
+        const Vec3& direction = hit.direction(rays[k]);
+        values[k] = light_.sky(direction) * kPi * hit.transmittance;
+        if (!found.empty()) found[k] = RowEntry::of_sky(pack_direction(direction), kPi * hit.transmittance);
       } else if (hit.patch.valid()) {
         Spectrum back = light_.sampler.glow()[hit.patch];
         double share = 1;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -75,7 +74,7 @@ void look_at_block(const LinkBlock& block, const PatchSet& patches, const Elemen
 SkyView pack_sky_view(const Vec3& direction, const Spectrum& passes) {
   SkyView view{pack_direction(direction)};
   for (int k = 0; k < kMaxChannels; ++k)
-    view.bits |= static_cast<std::uint64_t>(std::lround(std::clamp(passes[k], 0.0, 1.0) * kAll))
+    view.bits |= static_cast<std::uint64_t>(std::clamp(passes[k], 0.0, 1.0) * kAll + 0.5)
                  << (kDirectionBits + k * kPassesBits);
   return view;
 }

@@ -309,9 +309,11 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
     if (!hit.escaped() ||
         first_way_out(problem.lights.openings, looked_at, ray.origin, ray.direction, hit.first) != kNoOpening)
       continue;
-    const std::uint32_t sky = pack_direction(hit.direction(ray));
-    sum += light.sky(unpack_direction(sky)) * hit.transmittance;
-    if (row) row->push_back(RowEntry::of_sky(sky, hit.transmittance * (std::numbers::pi / options.sky_rays)));
+    const Vec3& direction = hit.direction(ray);
+    sum += light.sky(direction) * hit.transmittance;
+    if (row)
+      row->push_back(
+          RowEntry::of_sky(pack_direction(direction), hit.transmittance * (std::numbers::pi / options.sky_rays)));
   }
   return sum * (std::numbers::pi / options.sky_rays);
 }

@@ -122,11 +122,11 @@ TEST_P(LayeredFieldOf, RowsThatAreKeptTakeAnotherSkyAsAFreshGatherDoes) {
   even.sky->model = SkyModel::uniform;
   other.sky = std::make_shared<const SkyRadiance>(even);
 
-  // As it was: the rows are the gather.
+  // As it was: the rows are the gather, but for the directions in which they keep the sky.
   const PointIrradiance gathered = at_sensors(on_elements, joint.solution.B, nullptr);
   const Field again = irradiance(rows, RowLight({&whole, 1}, GetParam(), joint.solution.B));
   for (std::size_t k = 0; k < again.value.size(); ++k)
-    EXPECT_NEAR(again.value[k], gathered.E.value[k], 1e-6 * gathered.E.value[k]);
+    EXPECT_NEAR(again.value[k], gathered.E.value[k], 2e-5 * gathered.E.value[k]);
 
   // Another sky: within what the rays of the fresh gather are uncertain by.
   const Balanced s = solve_for(kept, {&other, 1});

@@ -27,20 +27,49 @@ PointOf sample_points(const VertexLightmap& lightmap, const RayScene& rays) {
 }
 
 PointIrradiance gather_at(const Illumination& light, std::size_t count, const PointOf& point_of,
-                          const GatherPattern& pattern, std::string_view stage, const Monitor& monitor) {
+                          const GatherPattern& pattern, std::string_view stage, const Monitor& monitor,
+                          const RowLight* layers) {
   PointIrradiance result;
+  const std::size_t lanes = layers ? layers->lanes() : 0;
   result.E = Field(count, light.problem.patches.channels);
+  if (layers) result.layers = Field(count, static_cast<int>(lanes));
   constexpr std::size_t kBlock = 2048;
   const Blocks blocks = parallel_blocks(count, kBlock, 16, stage, monitor, [&](std::size_t from, std::size_t to) {
     unsigned long long rays = 0;
+    LightRow row;
+    std::vector<double> delta_light(lanes);
     for (std::size_t i = from; i < to; ++i) {
       const ReceivingPoint at = point_of(i);
-      result.E.set(i, gather_point(light, at.p, at.n, pattern, rays).E);
+      const GatheredLight found = gather_point(light, at.p, at.n, pattern, rays, layers ? &row : nullptr);
+      result.E.set(i, found.E);
+      if (layers)
+        add_layers(found, row, *layers, 1, std::span(result.layers.value).subspan(i * lanes, lanes), delta_light);
     }
     return rays;
   });
   result.done = blocks.done, result.rays = blocks.rays;
   return result;
+}
+
+LightRows gather_rows_at(const Illumination& light, std::size_t count, const PointOf& point_of,
+                         const GatherPattern& pattern) {
+  std::vector<LightRow> row(count);
+  parallel_for(count, 16, [&](std::size_t from, std::size_t to) {
+    unsigned long long rays = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const ReceivingPoint at = point_of(i);
+      gather_point(light, at.p, at.n, pattern, rays, &row[i]);
+    }
+  });
+  LightRows rows;
+  std::size_t entries = 0;
+  for (const LightRow& r : row) entries += r.size();
+  rows.entries.reserve(entries);
+  for (LightRow& r : row) {
+    rows.append(r);
+    r = {};
+  }
+  return rows;
 }
 
 void set_points(const PointIrradiance& at_samples, VertexLightmap& lightmap) {

@@ -10,6 +10,7 @@
 #include "solver/model/assert.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
+#include "solver/sampling/packed_direction.h"
 #include "solver/sampling/polygon_view.h"
 #include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
@@ -34,8 +35,9 @@ class View {
 
   /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
   /// openings or bright areas, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
+  /// found: empty, or set to what each met, weighted so that it makes these values.
   void look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
-            std::span<Spectrum> values) const {
+            std::span<Spectrum> values, std::span<RowEntry> found = {}) const {
     std::array<Ray, 16> rays;
     std::array<Hit, 16> hits;
     for (std::size_t k = 0; k < directions.size(); ++k) rays[k] = {p_, directions[k]};
@@ -44,15 +46,22 @@ class View {
     for (std::size_t k = 0; k < directions.size(); ++k) {
       const Hit& hit = hits[k];
       values[k] = Spectrum(0.0);
+      if (!found.empty()) found[k] = {};
       if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
       if (hit.escaped()) {
-        values[k] = light_.sky(hit.direction(rays[k])) * kPi * hit.transmittance;
+        const Vec3& direction = hit.direction(rays[k]);
+        values[k] = light_.sky(direction) * kPi * hit.transmittance;
+        if (!found.empty()) found[k] = RowEntry::of_sky(pack_direction(direction), kPi * hit.transmittance);
       } else if (hit.patch.valid()) {
         Spectrum back = light_.sampler.glow()[hit.patch];
-        if (owner == kNobody && bright_rays_ > 0)
-          back *= balance_heuristic(density[k],
+        double share = 1;
+        if (owner == kNobody && bright_rays_ > 0) {
+          share = balance_heuristic(density[k],
                                     bright_rays_ * light_.sampler.density(hit, p_, frame_.n, directions[k], true));
+          back *= share;
+        }
         values[k] = back * hit.transmittance;
+        if (!found.empty()) found[k] = RowEntry::of_patch(hit.patch, share * hit.transmittance);
       }
     }
   }
@@ -130,6 +139,14 @@ std::size_t share_of(const RayShares& shares, const RayBudget& budget, int strat
 /// Of cosine-distributed directions, per solid angle, in the frame of the normal.
 double cosine_density(const std::array<float, 3>& d) { return std::max(1e-6, static_cast<double>(d[2])) / kPi; }
 
+/// Adds what rays met to a row, each ray with its weight.
+void add_to_row(std::span<RowEntry> found, std::span<const double> weight, LightRow& row) {
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    found[k].scale(Spectrum(weight[k]));
+    if (!found[k].is_empty()) row.push_back(found[k]);
+  }
+}
+
 struct Sum {
   Spectrum E{0.0};
   double variance = 0;  ///< variance by the differences of neighbouring rays
@@ -137,14 +154,17 @@ struct Sum {
 
 /// Irradiance along the bundle's rays that belong to nobody else.
 Sum from_bundle(const View& view, const Frame& frame, const Strata& strata, const RayShares& shares,
-                unsigned long long& rays) {
+                unsigned long long& rays, LightRow* row) {
   std::array<Vec3, 16> directions;
+  std::array<RowEntry, 16> found;
   std::array<double, 16> density, share_of_ray;
   std::array<Spectrum, 16> values;
   std::size_t queued = 0;
   Sum sum;
   const auto flush = [&] {
-    view.look(std::span(directions).first(queued), density, kNobody, std::span(values).first(queued));
+    const auto met = std::span(found).first(row ? queued : 0);
+    view.look(std::span(directions).first(queued), density, kNobody, std::span(values).first(queued), met);
+    if (row) add_to_row(met, share_of_ray, *row);
     for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * share_of_ray[k];
     for (std::size_t k = 0; k + 1 < queued; k += 2) {
       const double difference =
@@ -231,52 +251,81 @@ struct AreaView {
 
   /// Up to 16 points.
   void look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,
-            std::span<PolygonView::Sight> sights) const {
+            std::span<PolygonView::Sight> sights, std::span<RowEntry> found = {}) const {
     std::array<Vec3, 16> directions;
     std::array<double, 16> density{};  // counts for rays that belong to nobody only
     for (std::size_t k = 0; k < points.size(); ++k) {
       sights[k] = polygon.look(points[k][0], points[k][1]);
       directions[k] = sights[k].direction;
     }
-    view.look(std::span(directions).first(points.size()), density, owner, values);
+    view.look(std::span(directions).first(points.size()), density, owner, values, found);
   }
 };
 
+/// What a row of an area's rays is scaled by, so that it gives all of E where its rays alone give `found`: nothing is
+/// left to chance in it either where the view is even. By a factor at most: a plan's mean may come from elsewhere.
+Spectrum gain_of_area(const Spectrum& E, const Spectrum& found) {
+  constexpr double kMost = 4;
+  Spectrum gain(1.0);
+  for (int c = 0; c < kMaxChannels; ++c)
+    if (found[c] > 0) gain[c] = std::clamp(E[c] / found[c], 1 / kMost, kMost);
+  return gain;
+}
+
 /// Irradiance from an area: what differs from the mean of the plan by a ray a cell, the mean itself in closed form.
 Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells, const LightArea& area, const Vec3& p,
-              const Vec3& n, unsigned long long& rays) {
+              const Vec3& n, unsigned long long& rays, LightRow* row) {
   Sum sum{plan.mean * form_factor(area, p, n), 0};
   std::array<std::array<float, 2>, 16> points;
   std::array<Spectrum, 16> values;
   std::array<PolygonView::Sight, 16> sights;
+  std::array<RowEntry, 16> found;
+  std::array<double, 16> weight;
+  Spectrum by_rays(0.0);
+  const std::size_t begin = row ? row->size() : 0;
   for (std::size_t first = 0; first < plan.size(); first += 16) {
     const std::size_t count = std::min<std::size_t>(16, plan.size() - first);
     for (std::size_t k = 0; k < count; ++k) {
       const AreaCell cell = plan[first + k];
       points[k] = cells.points(cell.grid)[cell.number];
     }
-    view.look(std::span(points).first(count), std::span(values).first(count), sights);
+    const auto met = std::span(found).first(row ? count : 0);
+    view.look(std::span(points).first(count), std::span(values).first(count), sights, met);
     double last = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [direction, per_share] = sights[k];
-      const Spectrum E = (values[k] - plan.mean) * (dot(direction, n) / kPi * per_share * plan[first + k].share());
+      weight[k] = dot(direction, n) / kPi * per_share * plan[first + k].share();
+      const Spectrum E = (values[k] - plan.mean) * weight[k];
       sum.E += E;
       if (k % 2 == 1) sum.variance += (luminous_mean(E) - last) * (luminous_mean(E) - last);
       last = luminous_mean(E);
+      if (row) by_rays += values[k] * weight[k];
     }
+    if (row) add_to_row(met, weight, *row);
+  }
+  if (row) {
+    const Spectrum gain = gain_of_area(sum.E, by_rays);
+    for (RowEntry& e : std::span(*row).subspan(begin)) e.scale(gain);
   }
   rays += plan.size();
   return sum;
 }
 
 Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
-                        const GatherPlan& plan, const View& view) {
+                        const GatherPlan& plan, const View& view, LightRow* row) {
   const int count = pattern.quality().bright_rays;
   const RayBudget& budget = pattern.quality().bundle;
   const RayScene& rays = light.problem.rays;
+  struct Load {
+    Spectrum irradiance;
+    PatchId patch;
+    double weight;
+  };
   Spectrum sum(0.0);
-  auto shadows = shadow_rays<Spectrum>(rays, [&](const Spectrum& irradiance, const Vec3& from, const Vec3& to) {
-    sum += irradiance * rays.glass_transmittance(from, to);
+  auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
+    const Spectrum passes = rays.glass_transmittance(from, to);
+    sum += load.irradiance * passes;
+    if (row) row->push_back(RowEntry::of_patch(load.patch, load.weight / count * passes));
   });
   for (int k = 0; k < count; ++k) {
     const auto& u = pattern.bright_choices()[static_cast<std::size_t>(k)];
@@ -286,7 +335,8 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
     if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
     const std::size_t share = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
     const double bundle = static_cast<double>(share) * budget.strata() * dot(frame.n, d) / kPi;
-    shadows.send(p, s.end, s.irradiance * balance_heuristic(count * s.density, bundle));
+    const double share_of_both = balance_heuristic(count * s.density, bundle);
+    shadows.send(p, s.end, {s.irradiance * share_of_both, s.patch, s.weight * share_of_both});
   }
   shadows.trace();
   return sum / count;
@@ -353,17 +403,18 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 }
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                           const GatherPlan& plan, unsigned long long& rays) {
+                           const GatherPlan& plan, unsigned long long& rays, LightRow* row) {
+  if (row) row->clear();
   const int to_bright_patches = bright_rays(light, pattern, plan);
   const Frame frame(n);
   const View view(light, p, frame, to_bright_patches, plan);
-  Sum sum = from_bundle(view, frame, pattern.bundle(), plan.bundle, rays);
+  Sum sum = from_bundle(view, frame, pattern.bundle(), plan.bundle, rays, row);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
     // A plan may come from the other side of the area's plane: from there no ray belongs to it.
     if (!(dot(p - area.centre, area.normal) > 0)) return;
     const PolygonView polygon(p, n, area.triangles, area.corners);
     if (!(polygon.solid_angle() > 0)) return;
-    const Sum found = from_area({view, polygon, owner}, area_plan, pattern.area_cells(), area, p, n, rays);
+    const Sum found = from_area({view, polygon, owner}, area_plan, pattern.area_cells(), area, p, n, rays, row);
     sum.E += found.E;
     sum.variance += found.variance;
   };
@@ -375,11 +426,11 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
 
   GatheredLight at{sum.E, Spectrum(0.0), std::sqrt(sum.variance)};
   if (to_bright_patches > 0) {
-    at.E += bright_patches(light, p, frame, pattern, plan, view);
+    at.E += bright_patches(light, p, frame, pattern, plan, view, row);
     rays += static_cast<unsigned>(to_bright_patches);
   }
   if (!light.problem.lights.empty()) {
-    at.delta_light = light.sampler.delta_light(p, n, pattern.quality().sun_rays, pattern.sun_key());
+    at.delta_light = light.sampler.delta_light(p, n, pattern.quality().sun_rays, pattern.sun_key(), row);
     at.E += at.delta_light;
   }
   // Where it is all but dark, what differs from a plan's mean may leave a little less than nothing.
@@ -388,9 +439,23 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
 }
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                           unsigned long long& rays) {
+                           unsigned long long& rays, LightRow* row) {
   return gather_point(light, p, n, pattern,
-                      wants_plan(light, pattern) ? plan_gather(light, p, n, pattern, rays) : GatherPlan{}, rays);
+                      wants_plan(light, pattern) ? plan_gather(light, p, n, pattern, rays) : GatherPlan{}, rays, row);
+}
+
+void add_layers(const GatheredLight& at, const LightRow& row, const RowLight& layers, double weight,
+                std::span<double> all, std::span<double> delta_light) {
+  thread_local std::vector<double> lanes;
+  const auto first = std::ranges::find_if(row, [](const RowEntry& e) { return e.is_of_light(); });  // the last of a row
+  const auto others = static_cast<std::size_t>(first - row.begin());
+  lanes.assign(layers.lanes(), 0.0);
+  layers.add(std::span(row).first(others), lanes.data());
+  divide_among_layers(at.E - at.delta_light, layers.channels(), lanes);
+  for (std::size_t l = 0; l < lanes.size(); ++l) all[l] += weight * lanes[l];
+  lanes.assign(layers.lanes(), 0.0);
+  layers.add(std::span(row).subspan(others), lanes.data());
+  for (std::size_t l = 0; l < lanes.size(); ++l) all[l] += weight * lanes[l], delta_light[l] += weight * lanes[l];
 }
 
 }  // namespace clerestory

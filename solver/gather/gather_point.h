@@ -45,11 +45,20 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.
+/// row    null, or replaced by what was found, for other light: times this light it is E, but where the rays to an area
+///        found little of the mean that the plan knows.
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                           const GatherPlan& plan, unsigned long long& rays);
+                           const GatherPlan& plan, unsigned long long& rays, LightRow* row = nullptr);
 
 /// The same with a plan of its own, where it wants one.
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                           unsigned long long& rays);
+                           unsigned long long& rays, LightRow* row = nullptr);
+
+/// What layers give at a point where `at` is what they give together and `row` what was found: luminaires and suns
+/// exactly, all other light so that it sums to what is left.
+///
+/// all, delta_light  lanes, added to `weight` times.
+void add_layers(const GatheredLight& at, const LightRow& row, const RowLight& layers, double weight,
+                std::span<double> all, std::span<double> delta_light);
 
 }  // namespace clerestory

@@ -4,10 +4,12 @@
 #include <numbers>
 #include <span>
 
+#include "solver/hierarchy/sky_views.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
+#include "solver/sampling/packed_direction.h"
 #include "solver/sampling/two_estimators.h"
 #include "solver/visibility/shadow_rays.h"
 
@@ -17,7 +19,6 @@ namespace {
 /// Sums over a bundle, by member, of what each gets of its rays.
 struct BundleSums {
   std::array<double, kMostMembers> all{}, arrives{}, escapes{};
-  std::array<Spectrum, kMostMembers> sky{};
 };
 
 /// Whether direct light has looked for this ray's sky through an opening.
@@ -43,7 +44,7 @@ class Collector {
       const auto shares = std::span(share).first(n);
       if (n > 1) area_.find_shares(ray.direction, shares);
       if (hit.escaped())
-        take_sky(ray, hit, shares, sums);
+        take_escape(ray, hit, shares, sums);
       else if (hit.patch.valid())
         take_patch(ray, hit, bundle.from[k]->normal, shares, sums);
       for (std::size_t m = 0; m < n; ++m) sums.all[m] += shares[m];
@@ -73,13 +74,20 @@ class Collector {
   }
 
  private:
-  void take_sky(const Ray& ray, const Hit& hit, std::span<const double> share, BundleSums& sums) const {
+  void take_escape(const Ray& ray, const Hit& hit, std::span<const double> share, BundleSums& sums) {
     const double passes = luminous_mean(hit.transmittance);
-    const Spectrum sky = around_.light.sky(hit.direction(ray)) * std::numbers::pi * hit.transmittance;
-    for (std::size_t m = 0; m < share.size(); ++m) {
-      sums.escapes[m] += share[m] * passes;
-      if (!is_looked_for(around_, area_.members()[m].patch, ray, hit)) sums.sky[m] += sky * share[m];
-    }
+    for (std::size_t m = 0; m < share.size(); ++m) sums.escapes[m] += share[m] * passes;
+    if (!around_.keeps_sky_views || hit.transmittance.is_black()) return;
+    std::uint32_t looking = 0;
+    for (std::size_t m = 0; m < share.size(); ++m)
+      if (!is_looked_for(around_, area_.members()[m].patch, ray, hit)) looking |= 1u << m;
+    if (looking == 0) return;
+    out_.views.push_back(pack_sky_view(hit.direction(ray), hit.transmittance));
+    if (area_.hands_down()) out_.shared_views.push_back({pack_direction(ray.direction), looking});
+    if (!around_.sums_sky) return;
+    const double E = std::numbers::pi * luminous_mean(around_.light.sky(hit.direction(ray)) * hit.transmittance);
+    for (std::size_t m = 0; m < share.size(); ++m)
+      if ((looking >> m & 1) != 0) out_.E_sky += area_.members()[m].area / area_.area() * share[m] * E / R_;
   }
 
   void take_patch(const Ray& ray, const Hit& hit, const Vec3& normal, std::span<const double> share, BundleSums& sums) {
@@ -111,12 +119,8 @@ class Collector {
 
   void note_view(const BundleSums& sums) {
     const auto part = [](double sum, double all) { return static_cast<float>(all > 0 ? sum / all : 0); };
-    out_.E_sky = 0;
-    for (std::size_t m = 0; m < area_.members().size(); ++m) {
-      const Spectrum E_sky = sums.sky[m] / R_;
-      out_.view[m] = {E_sky, part(sums.arrives[m], sums.all[m]), part(sums.escapes[m], sums.all[m])};
-      out_.E_sky += area_.members()[m].area / area_.area() * luminous_mean(E_sky);
-    }
+    for (std::size_t m = 0; m < area_.members().size(); ++m)
+      out_.view[m] = {part(sums.arrives[m], sums.all[m]), part(sums.escapes[m], sums.all[m])};
   }
 
   const ReceiverArea& area_;
@@ -128,22 +132,24 @@ class Collector {
 void clear(Arrivals& arrivals, bool hands_down) {
   arrivals.list.clear();
   arrivals.bright = {};
+  arrivals.views.clear(), arrivals.shared_views.clear();
+  arrivals.E_sky = 0;
   if (hands_down) arrivals.shares.clear();
 }
 
 /// All directions sum to 1. What the bright sources leave, by their better estimate, is shared by the rest of the
 /// bundle: other patches, what escapes, what is lost.
-void make_sum_one(std::size_t members, Arrivals& arrivals) {
+void make_sum_one(std::size_t members, int rays, Arrivals& arrivals) {
   const BrightShares& bright = arrivals.bright;
   const bool rest = bright.hits < 1 && bright.seen < 1;
   const double gain = rest ? (1 - bright.seen) / (1 - bright.hits) : 0;
   const double gain_bright = rest ? 1 : 1 / bright.seen;
   for (Arrival& a : arrivals.list) a.weight = static_cast<float>(a.weight * (a.bright ? gain_bright : gain));
   for (MemberView& v : std::span(arrivals.view).first(members)) {
-    v.E_sky *= gain;
     v.escapes = static_cast<float>(v.escapes * gain);
     v.arrives = static_cast<float>(v.arrives * gain + bright.arrives * gain_bright);
   }
+  arrivals.view_weight = static_cast<float>(gain / rays);
   arrivals.E_sky *= gain;
 }
 
@@ -155,7 +161,7 @@ void find_arrivals(const ReceiverArea& area, const Bundle& bundle, const Surroun
   Collector collector(area, around, static_cast<int>(bundle.rays.size()), pairs, out);
   collector.take_bundle(bundle);
   if (pairs > 0) collector.take_pairs(mix_bits(key + kBrightPairs));
-  make_sum_one(area.members().size(), out);
+  make_sum_one(area.members().size(), static_cast<int>(bundle.rays.size()), out);
 }
 
 }  // namespace clerestory

@@ -24,7 +24,6 @@ struct Arrival {
 
 /// What one member looks at; shares as Transport keeps them.
 struct MemberView {
-  Spectrum E_sky;     ///< [W/m2]
   float arrives = 0;  ///< share of what it sends that reaches leaves [1]
   float escapes = 0;  ///< that leaves the scene [1]
 };
@@ -42,7 +41,10 @@ struct Arrivals {
   std::array<MemberView, kMostMembers> view;  ///< by member
   PartShares shares;                          ///< of a receiver that hands down
   BrightShares bright;
-  double E_sky = 0;  ///< luminous mean, over the receiver's area [W/m2]
+  std::vector<SkyView> views;            ///< of the receiver
+  std::vector<SharedView> shared_views;  ///< of one that hands down
+  float view_weight = 0;                 ///< of each view [1]
+  double E_sky = 0;  ///< luminous mean, over the receiver's area; where links are merged by it [W/m2]
 };
 
 /// What all receivers look into. direct: light that links do not bring; sky through the openings it has looked at is
@@ -51,6 +53,8 @@ struct Surroundings {
   const Illumination& light;
   const ElementTree& tree;
   const DirectLight& direct;
+  bool keeps_sky_views;
+  bool sums_sky;  ///< whether Arrivals::E_sky is wanted
 };
 
 /// Two estimators for the weight of p <- q, combined by the power heuristic (Veach & Guibas 1995): R cosine rays that

@@ -1,9 +1,12 @@
 #include "solver/hierarchy/balance.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
+#include <vector>
 
 #include "solver/hierarchy/gather_links.h"
+#include "solver/illumination/light_rows.h"
 #include "solver/model/assert.h"
 #include "solver/model/units.h"
 #include "solver/spaces/energy.h"
@@ -13,104 +16,228 @@ namespace {
 
 constexpr int kMostSweeps = 1'000;  // safety net; reaching it sets StopReason::iteration_limit
 
+/// L lanes of the right-hand sides, from lane `first` on. Beyond their number lanes are dark.
+///
+/// One and three lanes gather all of B in every sweep. Eight gather what the last sweep added to it: in floats, which
+/// are exact enough for what gets less and less, but would keep the residual of B from vanishing.
+template <std::size_t L>
 class System {
  public:
-  System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& E_direct,
-         Field first_guess)
-      : B(std::move(first_guess)), p_(patches), tree_(tree), transport_(transport), n_(patches.patch_count()) {
-    source_ = FB = r_ = albedo_ = F_albedo_ = lost_ = Field(n_, p_.channels);
+  System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& M,
+         const Field& E_direct, const Field& first_guess, std::size_t first)
+      : p_(patches),
+        transport_(transport),
+        n_(patches.patch_count()),
+        first_(first),
+        count_(std::min(L, static_cast<std::size_t>(E_direct.channels) - first)),
+        gather_(tree, transport),
+        source_(n_),
+        B_(n_),
+        FB_(n_),
+        r_(n_) {
+    const auto channels = static_cast<std::size_t>(p_.channels);
+    for (std::size_t l = 0; l < L; ++l) channel_[l] = (first + l) % channels;
+    const auto lanes = static_cast<std::size_t>(E_direct.channels);
+    const auto load = [&](const Field& from, std::size_t i) {
+      Lanes<L> x;
+      std::copy_n(from.value.data() + i * lanes + first_, count_, x.lane.data());
+      return x;
+    };
+    for (std::size_t i = 0; i < n_; ++i) FB_[i] = load(E_direct, i);
     for (std::size_t i = 0; i < n_; ++i) {
-      source_.set(i, p_.M[i] + p_.scattered(E_direct, i));
-      albedo_.set(i, p_.albedo(i));
-      scale_ += p_.area[i] * (p_.M[i] + E_direct[i]);
+      const Lanes<L> emitted = load(M, i), scatters = scattered(FB_, i);
+      for (std::size_t l = 0; l < L; ++l) {
+        source_[i].lane[l] = emitted.lane[l] + scatters.lane[l];
+        scale_.lane[l] += p_.area[i] * (emitted.lane[l] + FB_[i].lane[l]);
+      }
     }
-    if (B.size() != n_ || B.channels != p_.channels) B = source_;
-    gather(albedo_, F_albedo_);
-    ambient_loss_.resize(transport.spaces);
-    for (std::size_t i = 0; i < n_; ++i) {
-      lost_.set(i, albedo_[i] - p_.scattered(F_albedo_, i));
-      ambient_loss_[transport.space[i]] += p_.area[i] * lost_[i];
+    if (first_guess.size() == n_ && first_guess.channels == E_direct.channels)
+      for (std::size_t i = 0; i < n_; ++i) B_[i] = load(first_guess, i);
+    else
+      B_ = source_;
+    if constexpr (kBySteps) {  // from B = 0: what is missing is all that is sent
+      r_.swap(source_);
+      FB_.assign(n_, {});
     }
-    update();
+    find_losses(tree);
+    sweep();
   }
 
+  /// From B: what arrives, the residual that an ambient irradiance leaves over, and B of the next sweep.
   void sweep() {
-    for (std::size_t k = 0; k < B.value.size(); ++k) B.value[k] += r_.value[k];
-    update();
+    gather_(B_, arrives_of_B());
+    find_ambient();
+    take_step();
   }
+
   double residual() const {
-    Spectrum left;
-    for (std::size_t i = 0; i < n_; ++i)
-      left += p_.area[i] * Spectrum(std::abs(r_[i][0]), std::abs(r_[i][1]), std::abs(r_[i][2]));
     double worst = 0;
-    for (int c = 0; c < p_.channels; ++c)
-      if (scale_[c] > 0) worst = std::max(worst, left[c] / scale_[c]);
+    for (std::size_t l = 0; l < L; ++l)
+      if (scale_.lane[l] > 0) worst = std::max(worst, left_.lane[l] / scale_.lane[l]);
     return worst;
   }
 
-  Field B, FB;
+  /// E += what arrives over links.
+  void add_to(Field& E) const {
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Lanes<L> comes_back = by_channel(F_albedo_, i);
+      const Lanes<L>& e = e_[transport_.space[i]];
+      for (std::size_t l = 0; l < count_; ++l)
+        E.value[i * static_cast<std::size_t>(E.channels) + first_ + l] +=
+            FB_[i].lane[l] + e.lane[l] * comes_back.lane[l];
+    }
+  }
 
  private:
-  void gather(const Field& leaves, Field& E) {
-    pull(tree_, leaves, nodes_);
-    gather_and_push(transport_, tree_, nodes_, E);
+  Lanes<L> by_channel(const Field& x, std::size_t i) const {
+    Lanes<L> out;
+    const double* at = x.value.data() + i * static_cast<std::size_t>(x.channels);
+    if (x.channels == 1)
+      for (std::size_t l = 0; l < L; ++l) out.lane[l] = at[0];
+    else
+      for (std::size_t l = 0; l < L; ++l) out.lane[l] = at[channel_[l]];
+    return out;
   }
-  void update() {
-    gather(B, FB);
-    std::vector<Spectrum> e(transport_.spaces);
-    for (std::size_t i = 0; i < n_; ++i) {
-      r_.set(i, source_[i] + p_.scattered(FB, i) - B[i]);
-      e[transport_.space[i]] += p_.area[i] * r_[i];
+  /// PatchSet::scattered()
+  Lanes<L> scattered(const std::vector<Lanes<L>>& E, std::size_t i) const {
+    Lanes<L> out = by_channel(p_.rho, i);
+    const Lanes<L> here = E[i];
+    for (std::size_t l = 0; l < L; ++l) out.lane[l] *= here.lane[l];
+    for (const PatchSet::Behind& other : p_.patches_behind(i)) {
+      const Lanes<L> tau = by_channel(p_.tau, i);
+      for (std::size_t l = 0; l < L; ++l) out.lane[l] += tau.lane[l] * E[other.patch].lane[l] * other.share;
     }
-    for (std::size_t s = 0; s < e.size(); ++s)
-      for (int c = 0; c < kMaxChannels; ++c) e[s][c] = ambient_loss_[s][c] > 0 ? e[s][c] / ambient_loss_[s][c] : 0;
+    return out;
+  }
+
+  /// What is lost of an ambient irradiance of 1 in each space, by channel.
+  void find_losses(const ElementTree& tree) {
+    albedo_ = F_albedo_ = lost_ = Field(n_, p_.channels);
+    for (std::size_t i = 0; i < n_; ++i) albedo_.set(i, p_.albedo(i));
+    Field nodes;
+    pull(tree, albedo_, nodes);
+    gather_and_push(transport_, tree, nodes, F_albedo_);
+    ambient_loss_.resize(transport_.spaces);
     for (std::size_t i = 0; i < n_; ++i) {
-      const Spectrum e_i = e[transport_.space[i]];
-      B.add(i, e_i * albedo_[i]);
-      FB.add(i, e_i * F_albedo_[i]);
-      r_.set(i, r_[i] - e_i * lost_[i]);
+      lost_.set(i, albedo_[i] - p_.scattered(F_albedo_, i));
+      ambient_loss_[transport_.space[i]] += p_.area[i] * lost_[i];
     }
   }
 
+  std::vector<Lanes<L>>& arrives_of_B() { return kBySteps ? source_ : FB_; }
+
+  /// The residual, and the ambient irradiance that makes it vanish in each space.
+  void find_ambient() {
+    const std::vector<Lanes<L>>& arrives = arrives_of_B();
+    e_.assign(transport_.spaces, {});
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Lanes<L> leaves = scattered(arrives, i), B = B_[i];
+      const double area = p_.area[i];
+      Lanes<L> r = kBySteps ? r_[i] : source_[i], e = e_[transport_.space[i]];
+      for (std::size_t l = 0; l < L; ++l) r.lane[l] = r.lane[l] + leaves.lane[l] - B.lane[l];
+      for (std::size_t l = 0; l < L; ++l) e.lane[l] += area * r.lane[l];
+      r_[i] = r;
+      e_[transport_.space[i]] = e;
+      if constexpr (kBySteps) {
+        Lanes<L> FB = FB_[i];
+        const Lanes<L> more = arrives[i];
+        for (std::size_t l = 0; l < L; ++l) FB.lane[l] += more.lane[l];
+        FB_[i] = FB;
+      }
+    }
+    for (std::size_t s = 0; s < e_.size(); ++s)
+      for (std::size_t l = 0; l < L; ++l) {
+        const double loss = ambient_loss_[s].c[channel_[l]];
+        e_[s].lane[l] = loss > 0 ? e_[s].lane[l] / loss : 0;
+      }
+  }
+
+  void take_step() {
+    Lanes<L> left;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Lanes<L> albedo = by_channel(albedo_, i), lost = by_channel(lost_, i), e = e_[transport_.space[i]];
+      const double area = p_.area[i];
+      Lanes<L> r = r_[i], B = kBySteps ? Lanes<L>{} : B_[i];
+      for (std::size_t l = 0; l < L; ++l) r.lane[l] -= e.lane[l] * lost.lane[l];
+      for (std::size_t l = 0; l < L; ++l) left.lane[l] += area * std::abs(r.lane[l]);
+      for (std::size_t l = 0; l < L; ++l) B.lane[l] = B.lane[l] + e.lane[l] * albedo.lane[l] + r.lane[l];
+      B_[i] = B;
+    }
+    left_ = left;
+  }
+
+  static constexpr bool kBySteps = L == 8;
+
   const PatchSet& p_;
-  const ElementTree& tree_;
   const Transport& transport_;
-  std::size_t n_;
-  Field source_, r_, nodes_;
-  Field albedo_, F_albedo_, lost_;  ///< lost: albedo less what comes back of it
-  Spectrum scale_;
+  std::size_t n_, first_, count_;
+  std::array<std::size_t, L> channel_;  ///< of each lane
+  LinkGather<L> gather_;
+  std::vector<Lanes<L>> source_;        ///< by steps: what arrives of B_
+  std::vector<Lanes<L>> B_;             ///< by steps: what was added to B last
+  std::vector<Lanes<L>> FB_, r_;        ///< all that arrives; M + rho E - B before the ambient irradiance e
+  Field albedo_, F_albedo_, lost_;      ///< by channel; lost: albedo less what comes back of it
   std::vector<Spectrum> ambient_loss_;  ///< by space: sum A lost [m2]
+  Lanes<L> scale_, left_;
+  std::vector<Lanes<L>> e_;  ///< by space
 };
+
+struct Sweeps {
+  long count = 0;
+  double residual = 0;
+  StopReason stop = StopReason::converged;
+};
+
+/// E_direct becomes E in some of its lanes.
+template <std::size_t L>
+Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor, Field& E) {
+  Sweeps done;
+  for (done.residual = system.residual(); done.residual > residual; done.residual = system.residual()) {
+    if (done.count == kMostSweeps) done.stop = StopReason::iteration_limit;
+    if (monitor.should_stop()) done.stop = why_stopped(monitor);
+    if (done.stop != StopReason::converged) break;
+    system.sweep();
+    ++done.count;
+  }
+  system.add_to(E);
+  return done;
+}
 
 }  // namespace
 
-Solution balance(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& E_direct,
-                 Field B, double residual, const Monitor& monitor) {
-  Solution s;
-  System system(patches, tree, transport, E_direct, std::move(B));
-  const auto log = [&] {
-    char line[80];
-    std::snprintf(line, sizeof line, "sweep %ld, residual %.2g", s.iterations, s.residual);
-    s.log.push_back(line);
+Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& M,
+                 const Field& E_direct, Field B, double residual, const Monitor& monitor) {
+  CLERESTORY_ASSERT(M.channels, ==, E_direct.channels);
+  Balanced s;
+  s.E = E_direct;
+  const auto lanes = static_cast<std::size_t>(E_direct.channels), channels = static_cast<std::size_t>(patches.channels);
+  const auto solve = [&]<std::size_t L>(std::size_t first) {
+    System<L> system(patches, tree, transport, M, E_direct, B, first);
+    if (first + L >= lanes) B = {};
+    const Sweeps done = sweep_until(system, residual, monitor, s.E);
+    s.iterations = std::max(s.iterations, done.count);
+    s.residual = std::max(s.residual, done.residual);
+    if (done.stop != StopReason::converged) s.stop = done.stop;
   };
-  for (s.residual = system.residual(); s.residual > residual; s.residual = system.residual()) {
-    if (s.iterations == kMostSweeps) s.stop = StopReason::iteration_limit;
-    if (monitor.should_stop()) s.stop = why_stopped(monitor);
-    if (s.stop != StopReason::converged) break;
-    system.sweep();
-    ++s.iterations;
-  }
-  log();
-  CLERESTORY_ASSERT(all_finite(system.FB), ==, true);
+  if (lanes == 1) solve.template operator()<1>(0);
+  if (lanes == 3) solve.template operator()<3>(0);
+  for (std::size_t first = 0; first < lanes && lanes != 1 && lanes != 3; first += 8)
+    solve.template operator()<8>(first);
+  CLERESTORY_ASSERT(all_finite(s.E), ==, true);
 
-  const std::size_t n = patches.patch_count();
-  s.E = s.B = Field(n, patches.channels);
-  for (std::size_t i = 0; i < n; ++i) s.E.set(i, E_direct[i] + system.FB[i]);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Spectrum radiosity = patches.M[i] + patches.scattered(s.E, i);
-    s.B.set(i, radiosity);
-    const Losses on_its_way = losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
-    s.energy += where_light_ends(patches, i, s.E[i], radiosity, on_its_way);
+  s.B = Field(patches.patch_count(), E_direct.channels);
+  s.energy.resize(lanes / channels);
+  for (std::size_t k = 0; k < s.energy.size(); ++k) {
+    const bool alone = s.energy.size() == 1;
+    const Field E_of_one = alone ? Field{} : one_layer(s.E, k, patches.channels);
+    const Field M_of_one = alone ? Field{} : one_layer(M, k, patches.channels);
+    const Field& E = alone ? s.E : E_of_one;
+    for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+      const Spectrum radiosity = (alone ? M : M_of_one)[i] + patches.scattered(E, i);
+      for (std::size_t c = 0; c < channels; ++c) s.B.value[i * lanes + k * channels + c] = radiosity.c[c];
+      const Losses on_its_way = losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
+      s.energy[k] += where_light_ends(patches, i, E[i], radiosity, on_its_way);
+    }
   }
   return s;
 }

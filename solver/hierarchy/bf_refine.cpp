@@ -147,7 +147,6 @@ BfLinks bf_refine(const Problem& problem, const ElementTree& tree, const Field& 
   }
   BfLinks out;
   Transport& transport = out.transport;
-  transport.E_sky = Field(n, problem.patches.channels);
   Closure closure = measure_closure(problem.patches, problem.rays, kRaysForClosure, options.seed);
   transport.arrives.resize(n), transport.escapes.resize(n);
   for (std::size_t i = 0; i < n; ++i) {

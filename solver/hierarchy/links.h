@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/model/channels.h"
-
 namespace clerestory {
 
 /// E += weight * B of the source node; weight is F V [1]. Eight bytes.
@@ -26,6 +24,20 @@ struct Receiver {
   std::uint32_t first_leaf, leaf_end;
   std::uint32_t rows = 1;
   bool hands_down = false;
+  std::uint32_t views = 0;  ///< of the sky
+  float view_weight = 0;    ///< of each of them [1]
+};
+
+/// A ray of a receiver's bundle that left the scene: where it looks at the sky, and what glass and mirrors let through.
+/// Eight bytes, so that a ray that leaves costs what one that arrives does; see sky_views.h.
+struct SkyView {
+  std::uint64_t bits;
+};
+
+/// What members of a receiver that hands down need to know of a sky view beside it.
+struct SharedView {
+  std::uint32_t leaves;   ///< direction in which the ray left, before any mirror; packed
+  std::uint32_t members;  ///< bit m: member m looks at it; rays of its own have found the others' sky
 };
 
 /// Receivers one after another, and all that belongs to them in the same order. A leaf is in one block only, so blocks
@@ -35,14 +47,15 @@ struct LinkBlock {
   std::vector<Receiver> receivers;
   std::vector<std::uint32_t> row_end;  ///< by row, in `links`
   std::vector<Link> links;
-  std::vector<float> shares;  ///< rows x leaves of each receiver that hands down; sum a_m share_m = sum a_m
+  std::vector<float> shares;             ///< rows x leaves of each receiver that hands down; sum a_m share_m = sum a_m
+  std::vector<SkyView> views;            ///< Receiver::views of each
+  std::vector<SharedView> shared_views;  ///< of each receiver that hands down
 };
 
-/// How light gets from leaf to leaf, whatever its amount.
+/// How light gets from leaf to leaf, and into leaves from which part of the sky, whatever its amount.
 struct Transport {
   std::vector<LinkBlock> blocks;
   // By PatchId.
-  Field E_sky;                       ///< N x channels, from sky and ground [W/m2]
   std::vector<float> arrives;        ///< N, share of what a leaf sends that reaches leaves [1]
   std::vector<float> escapes;        ///< N, share that leaves the scene; the rest goes into glass and dark sides [1]
   std::vector<std::uint32_t> space;  ///< N, leaves that exchange light, directly or over others, have one number

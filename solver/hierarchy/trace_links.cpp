@@ -63,7 +63,7 @@ double irradiance(const Given& given, const ReceiverArea& area, const Arrivals& 
   return E;
 }
 
-/// A row of links for each part of the sphere that light comes from, and at least one.
+/// A row of links for each part of the sphere that light comes from, and at least one; then the views of the sky.
 void write_rows(Receiver receiver, const Given& given, Workspace& work, LinkBlock& out) {
   sort_for_cut(work.arrivals.list);
   const double limit =
@@ -80,6 +80,10 @@ void write_rows(Receiver receiver, const Given& given, Workspace& work, LinkBloc
     if (receiver.hands_down) work.arrivals.shares.write(part, work.area.members().size(), out.shares);
     left = left.subspan(count);
   } while (!left.empty());
+  receiver.views = static_cast<std::uint32_t>(work.arrivals.views.size());
+  receiver.view_weight = work.arrivals.view_weight;
+  out.views.insert(out.views.end(), work.arrivals.views.begin(), work.arrivals.views.end());
+  out.shared_views.insert(out.shared_views.end(), work.arrivals.shared_views.begin(), work.arrivals.shared_views.end());
   out.receivers.push_back(receiver);
 }
 
@@ -87,7 +91,6 @@ void write_views(const Workspace& work, Transport& transport) {
   const auto members = work.area.members();
   for (std::size_t m = 0; m < members.size(); ++m) {
     const MemberView& view = work.arrivals.view[m];
-    transport.E_sky.set(members[m].patch, view.E_sky);
     transport.arrives[members[m].patch] = view.arrives;
     transport.escapes[members[m].patch] = view.escapes;
   }
@@ -141,9 +144,12 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   const PatchSet& patches = light.problem.patches;
   const std::size_t n = patches.patch_count();
   Transport transport;
-  transport.E_sky = Field(n, patches.channels);
   transport.arrives.resize(n), transport.escapes.resize(n);
-  const Given given{{light, tree, direct}, options, net_of(options), B.size() == n ? node_light(tree, B) : NodeLight{}};
+  const bool merges = B.size() == n;
+  const Given given{{light, tree, direct, options.sky_views, merges && options.uniform > 0},
+                    options,
+                    net_of(options),
+                    merges ? node_light(tree, B) : NodeLight{}};
   const std::vector<Receiver> receivers = choose_receivers(tree, patches, options.cluster_diameter, kMostReceivers);
   Neighbours nobody;
   nobody.fill(PatchId::kNone);
@@ -156,6 +162,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
     block.first_leaf = receivers[first].first_leaf, block.leaf_end = receivers[last - 1].leaf_end;
     for (std::size_t r = first; r < last; ++r) link(receivers[r], given, work, block, transport, neighbours[r]);
     block.links.shrink_to_fit(), block.shares.shrink_to_fit();
+    block.views.shrink_to_fit(), block.shared_views.shrink_to_fit();
   };
   const std::size_t blocks = transport.blocks.size();
   std::atomic<bool> stopped = false;

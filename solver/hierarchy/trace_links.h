@@ -21,6 +21,7 @@ struct LinkOptions {
   double uniform = 0.01;        ///< hits are linked at the highest node whose B varies by less than this share of
                                 ///< E_p; 0: at the leaf they met
   double cluster_diameter = 0;  ///< nodes of up to 32 leaves within this receive together [m]
+  bool sky_views = true;        ///< keep what is seen of the sky; a scene without any has no use for it
   std::uint64_t seed = 1;
 };
 
@@ -30,7 +31,7 @@ struct LinkOptions {
 /// light  made with what the bright sources send more than their surroundings; its problem is that of the leaves.
 /// B      N x channels, radiosity known so far, or what it is above its ground light; empty: nothing is merged.
 /// direct light that the links do not bring; sky through the openings it has looked at is not looked for again.
-/// Cost   R + L rays for each receiver; 8 bytes a link.
+/// Cost   R + L rays for each receiver; 8 bytes a link and a ray that leaves.
 Transport trace_links(const Illumination& light, const ElementTree& tree, const Field& B, const DirectLight& direct,
                       const LinkOptions& options, const Monitor& monitor = {});
 

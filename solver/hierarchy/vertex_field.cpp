@@ -36,11 +36,13 @@ std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
 /// Gathers at points that are new since the last time, in parallel.
 class Gatherer {
  public:
-  Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options)
+  Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options,
+           const RowLight* layers)
       : light_(gather_illumination(problem, B)),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
+        layers_(layers),
         worth_(worth_a_gather(mesh, options.most_points)),
         plans_(pilots_ ? mesh.points().position.size() : 0) {}
 
@@ -51,6 +53,8 @@ class Gatherer {
     const int channels = light_.problem.patches.channels;
     field.E.value.resize(end * static_cast<std::size_t>(channels));
     field.delta_light.value.resize(field.E.value.size());
+    for (Field* lanes : {&field.layers, &field.delta_layers})
+      if (layers_) lanes->value.resize(end * layers_->lanes());
     field.std_error.resize(end);
     field.known.resize(end);
     for (std::size_t p = begin; p < end && pilots_; ++p)
@@ -59,8 +63,9 @@ class Gatherer {
     const auto gathered =
         parallel_blocks(end - begin, kBlock, 16, "vertices", monitor, [&](std::size_t from, std::size_t to) {
           unsigned long long rays = 0;
+          LightRow row;
           for (std::size_t p = begin + from; p < begin + to; ++p)
-            if (is_worth_it(p)) gather_at(p, field, rays);
+            if (is_worth_it(p)) gather_at(p, field, row, rays);
           return rays;
         });
     for (std::size_t p = begin; p < begin + gathered.done; ++p) field.known[p] = is_worth_it(p);
@@ -70,7 +75,7 @@ class Gatherer {
 
  private:
   bool is_worth_it(std::size_t p) const { return p >= worth_.size() || worth_[p]; }
-  void gather_at(std::size_t p, VertexField& field, unsigned long long& rays) {
+  void gather_at(std::size_t p, VertexField& field, LightRow& row, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();
     GatheredLight mean;
     for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
@@ -78,7 +83,10 @@ class Gatherer {
       if (pilots_ && pilot_of_[p] == p && !plans_[p]) plans_[p] = plan_gather(light_, x, n, pattern_, rays);
       static const GatherPlan kNone;
       const auto* plan = pilots_ && plans_[pilot_of_[p]] ? &*plans_[pilot_of_[p]] : &kNone;
-      const GatheredLight here = gather_point(light_, x, n, pattern_, *plan, rays);
+      const GatheredLight here = gather_point(light_, x, n, pattern_, *plan, rays, layers_ ? &row : nullptr);
+      if (layers_)
+        add_layers(here, row, *layers_, at.sample_weight[s], lanes_of(field.layers, p),
+                   lanes_of(field.delta_layers, p));
       mean.E += here.E * at.sample_weight[s];
       mean.delta_light += here.delta_light * at.sample_weight[s];
       mean.std_error += here.std_error * at.sample_weight[s];
@@ -92,6 +100,7 @@ class Gatherer {
   const GatherPattern pattern_;
   const ElementMesh& mesh_;
   bool pilots_;
+  const RowLight* layers_;
   std::vector<bool> worth_;                       ///< by point of the mesh as it was at first
   std::vector<std::uint32_t> pilot_of_;           ///< by point: the one that sent a pilot for it
   std::vector<std::optional<GatherPlan>> plans_;  ///< by point of the mesh as it was at first
@@ -184,17 +193,19 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
 }
 
 VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
-                         const Monitor& monitor) {
+                         const Monitor& monitor, const RowLight* layers) {
   VertexField field;
+  if (layers) field.layers.channels = field.delta_layers.channels = static_cast<int>(layers->lanes());
   if (monitor.should_stop()) {
     const std::size_t points = mesh.points().position.size();
     field.E = field.delta_light = Field(points, problem.patches.channels);
     field.std_error.resize(points), field.known.resize(points);
+    if (layers) field.layers = field.delta_layers = Field(points, field.layers.channels);
     field.complete = false;
     return field;
   }
   field.E = field.delta_light = Field(0, problem.patches.channels);
-  Gatherer gatherer(problem, B, mesh, options);
+  Gatherer gatherer(problem, B, mesh, options, layers);
   for (int round = 0;; ++round) {
     field.complete = gatherer.gather(field, monitor);
     if (!field.complete || round == kMostRounds || mesh.points().position.size() >= options.most_points) break;

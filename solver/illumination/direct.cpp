@@ -11,6 +11,7 @@
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
+#include "solver/sampling/packed_direction.h"
 #include "solver/sampling/polygon_view.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/visibility/shadow_rays.h"
@@ -20,8 +21,9 @@ namespace {
 
 /// A way from a point of a patch to a light, not yet known to be free.
 struct ShadowTry {
-  Vec3 end;             ///< of the shadow ray
-  Spectrum irradiance;  ///< when nothing blocks
+  Vec3 end;                  ///< of the shadow ray
+  Spectrum irradiance;       ///< when nothing blocks
+  std::uint32_t number = 0;  ///< of the light, see Layer::lights
   std::uint32_t mirror = kNoMirror;
 };
 
@@ -29,12 +31,14 @@ struct ShadowTry {
 /// end_for(point, u, v) is free.
 class PatchSampler {
  public:
-  PatchSampler(const Problem& problem, std::size_t patch, const DirectOptions& options)
+  /// row: null, or where to add what is found, by light.
+  PatchSampler(const Problem& problem, std::size_t patch, const DirectOptions& options, LightRow* row)
       : problem_(problem),
         corners_(problem.patches.corner_positions(PatchId{patch})),
         normal_(problem.patches.normal[patch]),
         key_(stream_key(options.seed, kShadowPointsOfPatch, patch)),
-        options_(options) {}
+        options_(options),
+        row_(row) {}
 
   const Vec3& normal() const { return normal_; }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
@@ -61,11 +65,12 @@ class PatchSampler {
   }
 
   template <class Open, class End>
-  Spectrum mean(std::uint32_t mirror, const Open& open_at, const End& end_for, bool wide = false) const {
+  Spectrum mean(std::uint32_t number, std::uint32_t mirror, const Open& open_at, const End& end_for,
+                bool wide = false) const {
     return mean_of_choice(
         [&](const Vec3& p, double u, double v, const auto&) {
           const Vec3 end = end_for(p, u, v);
-          return ShadowTry{end, open_at(p, end), mirror};
+          return ShadowTry{end, open_at(p, end), number, mirror};
         },
         wide);
   }
@@ -75,14 +80,14 @@ class PatchSampler {
   template <class Light>
   Spectrum mean_of_choice(const Light& light, bool wide) const {
     if (options_.edge_rays <= options_.shadow_rays)
-      return look(key_, options_.shadow_rays, light).sum / options_.shadow_rays;
+      return kept(look(key_, options_.shadow_rays, light).sum / options_.shadow_rays, options_.shadow_rays);
     // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
     // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
     const Tally pilot = look(mix_bits(key_), options_.shadow_rays, light);
     const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
     const int rays =
         on_an_edge ? options_.edge_rays : std::min(options_.edge_rays, options_.shadow_rays * (wide ? 4 : 1));
-    return look(key_, rays, light).sum / rays;
+    return kept(look(key_, rays, light).sum / rays, rays);
   }
 
  private:
@@ -91,13 +96,43 @@ class PatchSampler {
     int facing = 0, visible = 0;
   };
 
+  /// What the last look() found, for the row: sums over its rays, by light.
+  struct OfLight {
+    std::uint32_t number;
+    Spectrum sum;
+  };
+  static std::vector<OfLight>& found() {
+    thread_local std::vector<OfLight> found;
+    return found;
+  }
+  void note(std::uint32_t number, const Spectrum& irradiance) const {
+    const auto known = std::ranges::find(found(), number, &OfLight::number);
+    if (known == found().end())
+      found().push_back({number, irradiance});
+    else
+      known->sum += irradiance;
+  }
+  Spectrum kept(const Spectrum& E, int rays) const {
+    if (row_)
+      for (const OfLight& light : found()) row_->push_back(RowEntry::of_light(light.number, light.sum / rays));
+    return E;
+  }
+
+  struct Load {
+    Spectrum irradiance;
+    std::uint32_t number;
+  };
+
   template <class Light>
   Tally look(std::uint64_t key, int count, const Light& light) const {
     const RayScene& rays = problem_.rays;
     Tally tally;
-    auto shadows = shadow_rays<Spectrum>(rays, [&](const Spectrum& irradiance, const Vec3& from, const Vec3& to) {
-      tally.sum += irradiance * rays.glass_transmittance(from, to);
+    found().clear();
+    auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
+      const Spectrum arrives = load.irradiance * rays.glass_transmittance(from, to);
+      tally.sum += arrives;
       ++tally.visible;
+      if (row_) note(load.number, arrives);
     });
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
       const auto u = sobol4(k, key);
@@ -108,12 +143,13 @@ class PatchSampler {
       ++tally.facing;
       const Vec3 to = short_of(to_light.end, from, rays.lift());
       if (to_light.mirror == kNoMirror) {
-        shadows.send(from, to, to_light.irradiance);
+        shadows.send(from, to, {to_light.irradiance, to_light.number});
         continue;
       }
       const Spectrum passes = rays.transmittance_by_mirror(from, to, to_light.mirror);
       tally.sum += to_light.irradiance * passes;
       tally.visible += !passes.is_black();
+      if (row_ && !passes.is_black()) note(to_light.number, to_light.irradiance * passes);
     }
     shadows.trace();
     return tally;
@@ -124,12 +160,15 @@ class PatchSampler {
   Vec3 normal_;
   std::uint64_t key_;
   const DirectOptions& options_;
+  LightRow* row_;
 };
 
-Spectrum from_luminaire(const PatchSampler& patch, const PlacedLuminaire& luminaire) {
+Spectrum from_luminaire(const Lights& lights, std::uint32_t number, const PatchSampler& patch) {
+  const PlacedLuminaire& luminaire = lights.luminaires[number];
   if (!patch.faces(luminaire)) return Spectrum(0.0);
   return patch.mean(
-      luminaire.mirror, [&](const Vec3& p, const Vec3& q) { return open_irradiance(luminaire, q, p, patch.normal()); },
+      number, luminaire.mirror,
+      [&](const Vec3& p, const Vec3& q) { return open_irradiance(luminaire, q, p, patch.normal()); },
       [&](const Vec3& p, double u, double v) { return light_point(luminaire, p, u, v); },
       opening_rays(luminaire, patch.centre()) > 4);
 }
@@ -141,7 +180,8 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
   constexpr double kMuch = 1.0 / 6;  // of what all can give
   Spectrum E(0.0);
   if (lights.luminaires.size() <= kFew) {
-    for (const PlacedLuminaire& luminaire : lights.luminaires) E += from_luminaire(patch, luminaire);
+    for (std::uint32_t number = 0; number < lights.luminaires.size(); ++number)
+      E += from_luminaire(lights, number, patch);
     return E;
   }
   struct Over {
@@ -163,7 +203,7 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
   std::size_t kept = 0;
   for (const Over& luminaire : over) {
     if (luminaire.gives > kMuch * all) {
-      E += from_luminaire(patch, lights.luminaires[luminaire.number]);
+      E += from_luminaire(lights, luminaire.number, patch);
     } else {
       shared += luminaire.gives;
       wide = wide || luminaire.wide;
@@ -177,22 +217,22 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
                                      [](double x, const Over& luminaire) { return x < luminaire.gives; });
     return static_cast<std::size_t>(std::min(at, over.end() - 1) - over.begin());
   };
-  return E +
-         patch.mean_of_choice(
-             [&](const Vec3& p, double u, double v, const auto& pick) {
-               const std::size_t k = chosen(pick());
-               const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
-               const PlacedLuminaire& luminaire = lights.luminaires[over[k].number];
-               const Vec3 q = light_point(luminaire, p, u, v);
-               return ShadowTry{q, open_irradiance(luminaire, q, p, patch.normal()) / probability, luminaire.mirror};
-             },
-             wide);
+  return E + patch.mean_of_choice(
+                 [&](const Vec3& p, double u, double v, const auto& pick) {
+                   const std::size_t k = chosen(pick());
+                   const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
+                   const PlacedLuminaire& luminaire = lights.luminaires[over[k].number];
+                   const Vec3 q = light_point(luminaire, p, u, v);
+                   return ShadowTry{q, open_irradiance(luminaire, q, p, patch.normal()) / probability, over[k].number,
+                                    luminaire.mirror};
+                 },
+                 wide);
 }
 
-Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, double far_away) {
+Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, std::uint32_t number, double far_away) {
   if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
   return patch.mean(
-      sun.mirror,
+      number, sun.mirror,
       [&](const Vec3& p, const Vec3& end) {
         return sun.normal_irradiance * std::max(0.0, dot(patch.normal(), end - p) / far_away);
       },
@@ -202,10 +242,15 @@ Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, double far_aw
 constexpr std::size_t kMostOpenings = 4;  ///< over a patch
 constexpr int kRaysOfOpening = 32;        ///< through each opening that matters
 
-/// Light of the sky through some openings, from points all over the patch. looked_at: those that a few rays found to
-/// show sky; light through the others is left to bundles.
+struct Through {
+  Spectrum E{0.0};   ///< mean irradiance [W/m2]
+  bool any = false;  ///< whether any ray left the scene
+};
+
+/// Light of the sky through some openings, from points all over the patch. looked_at: those that any of a few rays left
+/// by, whatever the sky there; light through the others is left to bundles.
 Spectrum through_openings(const Illumination& light, std::size_t patch, const DirectOptions& options,
-                          std::vector<std::uint32_t>& looked_at) {
+                          std::vector<std::uint32_t>& looked_at, LightRow* row) {
   constexpr int kPilotRays = 8;
   const Problem& problem = light.problem;
   const std::vector<LightArea>& openings = problem.lights.openings;
@@ -218,8 +263,8 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
   std::sort(over.begin(), over.end());
   over.erase(std::unique(over.begin(), over.end()), over.end());
 
-  const auto look = [&](std::uint32_t number, std::uint64_t key, int count) {
-    Spectrum sum(0.0);
+  const auto look = [&](std::uint32_t number, std::uint64_t key, int count, LightRow* keep) {
+    Through found;
     for (int k = 0; k < count; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 p = point_on_triangle(corners, u[0], u[1]) + n * problem.rays.lift();
@@ -228,24 +273,29 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
       const auto [d, solid_angle] = polygon.look(u[2], u[3]);
       const Hit hit = problem.rays.first_hit(problem.patches, {p, d});
       if (!hit.escaped() || first_way_out(openings, looked_at, p, d, hit.first) != number) continue;
-      sum += light.sky(hit.direction({p, d})) * hit.transmittance * (std::max(0.0, dot(d, n)) * solid_angle);
+      const std::uint32_t sky = pack_direction(hit.direction({p, d}));
+      const Spectrum weight = hit.transmittance * (std::max(0.0, dot(d, n)) * solid_angle);
+      found.E += light.sky(unpack_direction(sky)) * weight;
+      found.any = true;
+      if (keep) keep->push_back(RowEntry::of_sky(sky, weight / count));
     }
-    return sum / count;
+    found.E *= 1.0 / count;
+    return found;
   };
   const std::uint64_t key = stream_key(options.seed, kOpeningRaysOfPatch, patch);
   std::vector<std::uint32_t> seen;
   for (const std::uint32_t k : over) {
     looked_at = {k};
-    if (!look(k, stream_key(key, k + 1), kPilotRays).is_black()) seen.push_back(k);
+    if (look(k, stream_key(key, k + 1), kPilotRays, nullptr).any) seen.push_back(k);
   }
   looked_at = seen;
   Spectrum E(0.0);
-  for (const std::uint32_t k : looked_at) E += look(k, mix_bits(stream_key(key, k)), kRaysOfOpening);
+  for (const std::uint32_t k : looked_at) E += look(k, mix_bits(stream_key(key, k)), kRaysOfOpening, row).E;
   return E;
 }
 
 Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOptions& options,
-                  std::span<const std::uint32_t> looked_at) {
+                  std::span<const std::uint32_t> looked_at, LightRow* row) {
   const Problem& problem = light.problem;
   const Frame frame(problem.patches.normal[patch]);
   const auto corners = problem.patches.corner_positions(PatchId{patch});
@@ -256,9 +306,14 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
     const Ray ray{point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
                   cosine_direction(frame, u[0], u[1])};
     const Hit hit = problem.rays.first_hit(problem.patches, ray);
-    if (hit.escaped() &&
-        first_way_out(problem.lights.openings, looked_at, ray.origin, ray.direction, hit.first) == kNoOpening)
-      sum += light.sky(hit.direction(ray)) * hit.transmittance;
+    if (!hit.escaped() ||
+        first_way_out(problem.lights.openings, looked_at, ray.origin, ray.direction, hit.first) != kNoOpening)
+      continue;
+    const Vec3& direction = hit.direction(ray);
+    sum += light.sky(direction) * hit.transmittance;
+    if (row)
+      row->push_back(
+          RowEntry::of_sky(pack_direction(direction), hit.transmittance * (std::numbers::pi / options.sky_rays)));
   }
   return sum * (std::numbers::pi / options.sky_rays);
 }
@@ -285,7 +340,7 @@ EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, 
 }
 
 /// Many luminaires share the rays of four.
-void balance_luminaires(const Problem& problem, DirectLight& direct, const DirectOptions& options) {
+void balance_luminaires(const Problem& problem, DirectLight& direct, const DirectOptions& options, DirectRows* rows) {
   const std::size_t count = problem.lights.luminaires.size();
   if (count == 0) return;
   const auto rays = static_cast<std::uint32_t>(std::clamp<std::size_t>((1 << 16) / count, 512, 1 << 14));
@@ -300,18 +355,47 @@ void balance_luminaires(const Problem& problem, DirectLight& direct, const Direc
     direct.energy.escaped += b.escaped;
     direct.energy.absorbed += b.absorbed;
   }
+  for (std::size_t number = 0; rows && number < count; ++number)
+    rows->sources[number] = {power(problem.lights.luminaires[number]), balances[number]};
   direct.rays += count * rays;
+}
+
+double total_flux_of(const PatchSet& patches, const Field& E) {
+  double flux = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) flux += patches.area[i] * luminous_mean(E[i]);
+  return flux;
+}
+
+/// Rows of all patches in one, and what suns bring in.
+void keep(const Problem& problem, const std::vector<LightRow>& row_of_patch, DirectRows& rows) {
+  const std::size_t luminaires = problem.lights.luminaires.size();
+  rows.rows = {};
+  for (std::size_t i = 0; i < row_of_patch.size(); ++i) {
+    rows.rows.append(row_of_patch[i]);
+    for (const RowEntry& e : row_of_patch[i])
+      if (e.is_of_light() && e.number() >= luminaires) {
+        const Spectrum E{double{e.weight[0]}, double{e.weight[1]}, double{e.weight[2]}};
+        rows.sources[e.number()].flux += problem.patches.area[i] * E;
+      }
+  }
+  for (std::size_t k = luminaires; k < rows.sources.size(); ++k)
+    rows.sources[k].energy.emitted = luminous_mean(rows.sources[k].flux);
 }
 
 }  // namespace
 
-DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor) {
+DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor,
+                         DirectRows* rows) {
   const Problem& problem = light.problem;
   const Lights& lights = problem.lights;
   const std::size_t n = problem.patches.patch_count();
   DirectLight direct;
   direct.E = Field(n, problem.patches.channels);
   CLERESTORY_ASSERT(options.shadow_rays, >, 0);
+  if (rows) {
+    rows->sources.resize(lights.luminaires.size() + lights.suns.size());
+    rows->rows.begin.assign(n + 1, 0);
+  }
   if (lights.empty()) return direct;
 
   const double far_away = 4 * problem.rays.diameter();
@@ -319,18 +403,23 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   const bool has_openings = !lights.openings.empty();
   std::vector<std::vector<std::uint32_t>> looked_at(has_openings ? n : 0);
   if (has_openings) direct.E_openings = Field(n, problem.patches.channels);
+  std::vector<LightRow> row_of_patch(rows ? n : 0);
+  const auto luminaire_count = static_cast<std::uint32_t>(lights.luminaires.size());
   const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
-    const PatchSampler patch(problem, i, spend);
+    LightRow* row = rows ? &row_of_patch[i] : nullptr;
+    if (row) row->clear();
+    const PatchSampler patch(problem, i, spend, row);
     const Spectrum luminaires = from_luminaires(lights, patch);
     Spectrum sky(0.0);
-    for (const auto& sun : lights.suns) sky += from_sun(patch, sun, far_away);
+    for (std::uint32_t k = 0; k < lights.suns.size(); ++k)
+      sky += from_sun(patch, lights.suns[k], luminaire_count + k, far_away);
     if (has_openings) {
-      const Spectrum through = through_openings(light, i, spend, looked_at[i]);
+      const Spectrum through = through_openings(light, i, spend, looked_at[i], row);
       direct.E_openings.set(i, through);
       if (spend.sky_rays > 0) sky += through;
     }
     if (!light.sky.dark() && spend.sky_rays > 0)
-      sky += from_sky(light, i, spend, has_openings ? looked_at[i] : std::vector<std::uint32_t>{});
+      sky += from_sky(light, i, spend, has_openings ? looked_at[i] : std::vector<std::uint32_t>{}, row);
     direct.E.set(i, luminaires + sky);
     daylight[i] = luminous_mean(sky) * problem.patches.area[i];
   };
@@ -361,8 +450,50 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   CLERESTORY_ASSERT(all_finite(direct.E), ==, true);
   direct.rays += n * static_cast<std::size_t>(options.shadow_rays) * (lights.luminaires.size() + lights.suns.size());
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
-  balance_luminaires(problem, direct, options);
+  balance_luminaires(problem, direct, options, rows);
+  if (rows) keep(problem, row_of_patch, *rows);
   return direct;
+}
+
+EnergyBalance DirectSource::energy_at(const Spectrum& factor) const {
+  const double all = luminous_mean(flux), share = all > 0 ? luminous_mean(flux * factor) / all : 0;
+  return {.emitted = share * energy.emitted, .absorbed = share * energy.absorbed, .escaped = share * energy.escaped};
+}
+
+void DirectRows::append(const DirectRows& more) {
+  CLERESTORY_ASSERT(rows.size(), ==, more.rows.size());
+  LightRows both;
+  LightRow row;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    row.assign(rows[i].begin(), rows[i].end());
+    for (RowEntry e : more.rows[i]) {
+      if (e.is_of_light()) e.source += static_cast<std::uint32_t>(sources.size());
+      row.push_back(e);
+    }
+    both.append(row);
+  }
+  rows = std::move(both);
+  sources.insert(sources.end(), more.sources.begin(), more.sources.end());
+}
+
+DirectLayers direct_layers(const PatchSet& patches, const DirectRows& rows, std::span<const Layer> layers) {
+  const Field none;
+  const RowLight light(layers, patches.channels, none);
+  const std::size_t lanes = light.lanes();
+  const std::size_t n = rows.rows.size();
+  const Field dark(n, static_cast<int>(lanes));
+  DirectLayers out{dark, dark, std::vector<EnergyBalance>(layers.size())};
+  parallel_for(n, 64, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      for (const RowEntry& e : rows.rows[i])
+        light.add({&e, 1}, (e.is_of_sky() ? out.sky : out.delta_light).value.data() + i * lanes);
+  });
+  for (std::size_t s = 0; s < layers.size(); ++s) {
+    out.energy[s].emitted += total_flux_of(patches, one_layer(out.sky, s, patches.channels));
+    for (std::size_t k = 0; k < std::min(rows.sources.size(), layers[s].lights.size()); ++k)
+      out.energy[s] += rows.sources[k].energy_at(layers[s].lights[k]);
+  }
+  return out;
 }
 
 }  // namespace clerestory

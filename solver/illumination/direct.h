@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/illumination/illumination.h"
+#include "solver/illumination/light_rows.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
 
@@ -40,8 +41,38 @@ struct DirectLight {
   unsigned long long rays = 0;
 };
 
+/// A luminaire or sun of whose light rows tell.
+struct DirectSource {
+  Spectrum flux;         ///< a luminaire's; of a sun what it brings in, as of the scene's sky [W]
+  EnergyBalance energy;  ///< as of DirectLight
+
+  /// Its part in the balance of a layer.
+  EnergyBalance energy_at(const Spectrum& factor) const;
+};
+
+/// Direct light by what it comes from: the same rays for other light.
+struct DirectRows {
+  LightRows rows;                     ///< by patch: luminaires, suns, and sky where rays of their own look for it
+  std::vector<DirectSource> sources;  ///< numbered as in Layer::lights
+
+  /// Luminaires that were looked at by themselves, over the same patches; their numbers follow.
+  void append(const DirectRows& more);
+};
+
 /// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share. Looking twice at edges
 /// favours all lit and all dark alike, by less than 0.03 of a patch, which cancels along an edge.
-DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {});
+///
+/// rows  where it is not null: filled with what the rays found, 16 bytes for each luminaire and sun that reaches a
+///       patch, and for each ray of the patch that looks for the sky.
+DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {},
+                         DirectRows* rows = nullptr);
+
+/// Direct light of layers, N x lanes [W/m2].
+struct DirectLayers {
+  Field delta_light;                  ///< of luminaires and suns
+  Field sky;                          ///< where rays of their own look for it
+  std::vector<EnergyBalance> energy;  ///< by layer, as of DirectLight: what comes from the sky is emitted, too
+};
+DirectLayers direct_layers(const PatchSet& patches, const DirectRows& rows, std::span<const Layer> layers);
 
 }  // namespace clerestory

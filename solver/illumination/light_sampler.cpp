@@ -126,8 +126,13 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
   const Vec3 d = point - p;
   const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
   CLERESTORY_ASSERT(cos_q, >, 0);
-  return {point + normal * problem_.rays.lift(), glow_[q] * (kernel * area / probability),
-          probability * r2 / (cos_q * area), q};
+  const double weight = kernel * area / probability;
+  return {point + normal * problem_.rays.lift(),
+          glow_[q] * weight,
+          probability * r2 / (cos_q * area),
+          q,
+          kNoMirror,
+          weight};
 }
 
 LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v,
@@ -172,18 +177,26 @@ double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const
   return density(hit.patch, p, n, hit.distance, -dot(problem_.patches.normal[hit.patch], d), bright_patches_only);
 }
 
-Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const {
+Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key, LightRow* row) const {
   const RayScene& rays = problem_.rays;
+  struct Load {
+    Spectrum irradiance;
+    std::size_t number;
+  };
   Spectrum E(0.0);
-  auto shadows = shadow_rays<Spectrum>(rays, [&](const Spectrum& irradiance, const Vec3& from, const Vec3& to) {
-    E += irradiance * rays.glass_transmittance(from, to);
+  const auto arrive = [&](const Spectrum& irradiance, std::size_t number) {
+    E += irradiance;
+    if (row && !irradiance.is_black()) row->push_back(RowEntry::of_light(number, irradiance));
+  };
+  auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
+    arrive(load.irradiance * rays.glass_transmittance(from, to), load.number);
   });
-  const auto look = [&](const Vec3& to, const Spectrum& irradiance, std::uint32_t mirror) {
+  const auto look = [&](const Vec3& to, const Spectrum& irradiance, std::size_t number, std::uint32_t mirror) {
     if (irradiance.is_black()) return;
     if (mirror != kNoMirror)
-      E += irradiance * rays.transmittance_by_mirror(p, to, mirror);
+      arrive(irradiance * rays.transmittance_by_mirror(p, to, mirror), number);
     else
-      shadows.send(p, to, irradiance);
+      shadows.send(p, to, {irradiance, number});
   };
   // In the tree's order luminaires that share a packet are neighbours.
   const double lift = rays.lift();
@@ -191,21 +204,23 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, s
     const PlacedLuminaire& luminaire = problem_.lights.luminaires[number];
     const int count = opening_rays(luminaire, p);
     if (count == 1) {
-      look(short_of(luminaire.position, p, lift), open_irradiance(luminaire, p, n), luminaire.mirror);
+      look(short_of(luminaire.position, p, lift), open_irradiance(luminaire, p, n), number, luminaire.mirror);
       continue;
     }
     for (int k = 0; k < count; ++k) {
       const OpeningPlace at = opening_place(luminaire, k, count);
       const Vec3 q = light_point(luminaire, p, at.u, at.v);
-      look(short_of(q, p, lift), open_irradiance(luminaire, q, p, n) * at.weight, luminaire.mirror);
+      look(short_of(q, p, lift), open_irradiance(luminaire, q, p, n) * at.weight, number, luminaire.mirror);
     }
   }
   shadows.trace();
-  for (const PlacedSun& sun : problem_.lights.suns) {
+  for (std::size_t number = 0; number < problem_.lights.suns.size(); ++number) {
+    const PlacedSun& sun = problem_.lights.suns[number];
     for (int k = 0; k < sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
-      look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays), sun.mirror);
+      look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays),
+           problem_.lights.luminaires.size() + number, sun.mirror);
     }
     shadows.trace();
   }

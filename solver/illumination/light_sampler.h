@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "solver/illumination/light_rows.h"
 #include "solver/illumination/problem.h"
 #include "solver/lights/light_tree.h"
 #include "solver/lights/sky.h"
@@ -25,6 +26,7 @@ struct LightSample {
   double density = 0;   ///< of choosing this direction, per solid angle; 0 for lights that a bundle cannot hit
   PatchId patch;        ///< the bright patch it lies on; invalid for other lights
   std::uint32_t mirror = kNoMirror;  ///< the mirror that shows it, of an image
+  double weight = 0;                 ///< of a bright patch: irradiance = glow * weight [1]
 };
 
 class LightSampler {
@@ -51,8 +53,8 @@ class LightSampler {
   double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const;
 
   /// Irradiance at p of luminaires and of the sun: a shadow ray to each luminaire, more to openings that are near,
-  /// sun_rays to each sun.
-  Spectrum delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key) const;
+  /// sun_rays to each sun. row: null, or where to add what comes of each.
+  Spectrum delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key, LightRow* row = nullptr) const;
 
  private:
   struct Shares {

@@ -13,6 +13,7 @@
 #include "solver/hierarchy/debug_view.h"
 #include "solver/hierarchy/refine.h"
 #include "solver/hierarchy/shadow_edges.h"
+#include "solver/hierarchy/sky_views.h"
 #include "solver/hierarchy/trace_links.h"
 #include "solver/illumination/direct.h"
 #include "solver/methods/progressive.h"
@@ -137,9 +138,10 @@ std::string round_line(const char* what, const Solution& s, std::size_t leaves, 
   return line;
 }
 
-/// links -> gather -> push-pull on the leaves as they are. before: the round that came earlier, if any.
+/// links -> gather -> push-pull on the leaves as they are. before: the round that came earlier, if any; keep: null, or
+/// where its transport goes.
 Round solve_round(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options, Quality quality,
-                  const char* name, Round* before, const Monitor& monitor) {
+                  const char* name, Round* before, const Monitor& monitor, KeptTransport* keep = nullptr) {
   Round round;
   round.element = mesh.leaves();
   HierarchicalSolution& out = round.result;
@@ -150,7 +152,8 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
 
   if (options.oracle == Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
   quality.direct.rough_first = false;  // a round that is stopped is not returned
-  DirectLight direct = direct_light(Illumination(problem), quality.direct, monitor);
+  const DirectLight direct =
+      direct_light(Illumination(problem), quality.direct, monitor, keep ? &keep->direct : nullptr);
   if (monitor.should_stop()) return round;
   Field guess, glow;
   if (before) {
@@ -161,13 +164,14 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
     glow = leaves.M;
     for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.scattered(direct.E, i));
   }
-  const ElementTree tree = build_tree(leaves, before ? guess : glow);
+  ElementTree tree = build_tree(leaves, before ? guess : glow);
   const Illumination light(problem, glow);
   const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;
   quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
+  quality.links.sky_views = keep || !light.sky.dark();
   Transport transport;
   if (options.oracle == Oracle::error) {
     transport = trace_links(light, tree, before ? glow : Field{}, direct, quality.links, monitor);
@@ -187,17 +191,22 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
 
   out.delta_light = direct.E;
   Field E_direct = direct.E;
-  const bool looks_through = quality.direct.sky_rays == 0 && !direct.E_openings.value.empty();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Spectrum sky = looks_through ? transport.E_sky[i] + direct.E_openings[i] : transport.E_sky[i];
-    E_direct.add(i, sky);
+  double sky_flux = 0;
+  if (!light.sky.dark() && quality.direct.sky_rays == 0) {
+    const SkyRadiance* const sky = &light.sky;
+    Field E_sky = sky_irradiance(leaves, tree, transport, {&sky, 1});
+    for (std::size_t k = 0; k < direct.E_openings.value.size(); ++k) E_sky.value[k] += direct.E_openings.value[k];
+    for (std::size_t k = 0; k < E_sky.value.size(); ++k) E_direct.value[k] += E_sky.value[k];
+    sky_flux = total_flux(leaves, E_sky);
   }
   monitor.report("gather", 0);
   Solution& s = out.solution;
-  s = balance(leaves, tree, transport, E_direct, std::move(guess), quality.residual, monitor);
+  Balanced balanced = balance(leaves, tree, transport, leaves.M, E_direct, std::move(guess), quality.residual, monitor);
+  s.E = std::move(balanced.E), s.B = std::move(balanced.B);
+  s.energy = balanced.energy[0];
+  s.stop = balanced.stop, s.iterations = balanced.iterations, s.residual = balanced.residual;
   s.method = "hierarchical";
-  s.energy.emitted += total_flux(leaves, leaves.M) + total_flux(leaves, transport.E_sky);
-  if (looks_through) s.energy.emitted += total_flux(leaves, direct.E_openings);
+  s.energy.emitted += total_flux(leaves, leaves.M) + sky_flux;
   s.energy += direct.energy;
   s.rays = direct.rays + transport.rays;
   s.clusters = tree.clusters;
@@ -205,9 +214,14 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   s.log = {round_line(name, s, n, transport.receiver_count())};
   if (options.debug) view_round(light, tree, transport, quality.links, s, *options.debug);
   out.elements.spot = spots(leaves, s.B, out.delta_light, transport.arrives);
-  round.space = std::move(transport.space);
   round.spaces = transport.spaces;
+  round.space = keep ? transport.space : std::move(transport.space);
   round.complete = true;
+  if (keep) {
+    keep->elements = leaves;
+    keep->tree = std::move(tree), keep->transport = std::move(transport);
+    keep->complete = true;
+  }
   return round;
 }
 
@@ -283,8 +297,8 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     if (static_cast<double>(mesh.leaf_count()) < worth_another * static_cast<double>(before)) break;
   }
   if (going)
-    going =
-        go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count()), "last round", last.get(), monitor));
+    going = go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count()), "last round", last.get(),
+                              monitor, options.keep));
 
   HierarchicalSolution out;
   if (last) {

@@ -5,6 +5,7 @@
 
 #include "solver/hierarchy/element_mesh.h"
 #include "solver/illumination/problem.h"
+#include "solver/methods/kept_transport.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/method.h"
 #include "solver/model/monitor.h"
@@ -23,6 +24,7 @@ struct HierarchyOptions {
   std::size_t most_elements = 1'000'000;  ///< no more are made by halving
   std::uint64_t seed = 1;
   HierarchyDebug* debug = nullptr;  ///< filled with the last round that was done
+  KeptTransport* keep = nullptr;    ///< filled with the last round, where nothing stopped it
 };
 
 /// The leaf elements, and the light on them.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "solver/model/units.h"
@@ -117,10 +118,24 @@ void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<
 HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
                                      const HierarchicalFieldOptions& options, const Monitor& monitor) {
   ElementMesh mesh(problem.patches, std::move(map));
-  HierarchicalSolution coarse = hierarchical(problem, mesh, options.elements, monitor);
+  HierarchyOptions of_elements = options.elements;
+  KeptTransport kept;
+  if (!options.layers.empty() && !of_elements.keep) of_elements.keep = &kept;
+  HierarchicalSolution coarse = hierarchical(problem, mesh, of_elements, monitor);
   const std::vector<std::uint32_t> transport_leaves = mesh.leaves();
+  Balanced layers;
+  TransportLayers transport_layers{transport_leaves, {}, {}};
+  std::optional<RowLight> of_layers;
+  if (!options.layers.empty() && of_elements.keep->complete) {
+    layers = solve_for(*of_elements.keep, options.layers, of_elements.residual, monitor);
+    transport_layers.E = std::move(layers.E);
+    transport_layers.delta_light = direct_layers(coarse.elements, of_elements.keep->direct, options.layers).delta_light;
+    of_layers.emplace(options.layers, problem.patches.channels, layers.B);
+    kept = {};
+  }
   const Problem transport{coarse.elements, problem.rays, problem.lights};
-  VertexField field = gather_field(transport, coarse.solution.B, mesh, options.vertices, monitor);
+  VertexField field =
+      gather_field(transport, coarse.solution.B, mesh, options.vertices, monitor, of_layers ? &*of_layers : nullptr);
   if (options.elements.debug) view_errors(mesh, field, options.elements.debug->error);
 
   Solution solution = std::move(coarse.solution);
@@ -136,7 +151,14 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
     spot.insert(spot.end(), mesh.leaves_under(transport_leaves[j]), coarse.elements.spot[j]);
   coarse.elements = {};  // a million of them are a third of a gigabyte
   solution.E = field_on_leaves(mesh, transport_leaves, coarse, field);
-  HierarchicalField out{mesh.leaf_patches(), std::move(mesh).leaf_lightmap(), {}};
+  HierarchicalField out{mesh.leaf_patches(), {}, {}, {}};
+  if (of_layers) {
+    finish_layers(mesh, transport_layers, problem.patches.channels, field);
+    out.layers.B = radiosity_of_layers(mesh, transport_layers, field, out.elements, solution.E, options.layers);
+    out.layers.E = std::move(field.layers);
+    out.layers.energy = std::move(layers.energy);
+  }
+  out.lightmap = std::move(mesh).leaf_lightmap();
   out.elements.spot = std::move(spot);
   out.lightmap.E = std::move(field.E);
   solution.B = Field(out.elements.patch_count(), out.elements.channels);

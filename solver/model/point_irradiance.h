@@ -20,6 +20,7 @@ using PointOf = std::function<ReceivingPoint(std::size_t i)>;
 struct PointIrradiance {
   Field E;               ///< P x channels [W/m2]; 0 from number `done` on
   Field std_error;       ///< of E; empty unless paths estimated it
+  Field layers;          ///< P x lanes, E by layer; empty unless they were asked for
   std::size_t done = 0;  ///< less than P: stopped early
   unsigned long long rays = 0;
 

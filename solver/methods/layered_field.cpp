@@ -1,0 +1,94 @@
+#include "solver/methods/layered_field.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace clerestory {
+namespace {
+
+void add(std::span<const double> lanes, double weight, std::span<double> to) {
+  for (std::size_t l = 0; l < to.size(); ++l) to[l] += weight * lanes[l];
+}
+
+bool any_channel_dark(std::span<const double> lanes, int channels) {
+  for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
+    double sum = 0;
+    for (std::size_t l = c; l < lanes.size(); l += static_cast<std::size_t>(channels)) sum += lanes[l];
+    if (!(sum > 0)) return true;
+  }
+  return false;
+}
+
+/// Factors that put delta light of the leaves of what was one element right: its exact flux over their corners' mean.
+/// What no corner sees stays out.
+std::vector<double> delta_gains(const ElementMesh& mesh, std::span<const std::uint32_t> leaves,
+                                const VertexField& field, std::span<const double> exact) {
+  std::vector<double> mean(exact.size());
+  double area = 0;
+  for (const std::uint32_t leaf : leaves) {
+    const double part = mesh[leaf].area;
+    for (const std::uint32_t p : mesh.points_of(leaf)) add(lanes_of(field.delta_layers, p), part / 3, mean);
+    area += part;
+  }
+  std::vector<double> gain(exact.size(), 1.0);
+  for (std::size_t l = 0; l < gain.size(); ++l)
+    if (mean[l] > 0) gain[l] = exact[l] * area / mean[l];
+  return gain;
+}
+
+}  // namespace
+
+void finish_layers(const ElementMesh& mesh, const TransportLayers& transport, int channels, VertexField& field) {
+  std::vector<bool> filled = field.known;
+  for (std::size_t j = 0; j < transport.leaves.size(); ++j) {
+    const std::uint32_t leaf = transport.leaves[j];
+    for (const std::uint32_t p : mesh.points_of(leaf))
+      if (!field.known[p]) {
+        add(lanes_of(transport.E, j), mesh[leaf].area, lanes_of(field.layers, p));
+        filled[p] = true;
+      }
+  }
+  std::vector<double> rest(static_cast<std::size_t>(field.layers.channels));
+  for (std::size_t p = 0; p < field.E.size(); ++p) {
+    const std::span<double> all = lanes_of(field.layers, p), delta = lanes_of(field.delta_layers, p);
+    if (!filled[p])
+      for (const std::uint32_t end : mesh.ends(p)) add(lanes_of(std::as_const(field.layers), end), 1, all);
+    for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = all[l] - delta[l];
+    divide_among_layers(field.known[p] ? field.E[p] - field.delta_light[p] : field.E[p], channels, rest);
+    for (std::size_t l = 0; l < rest.size(); ++l) all[l] = rest[l] + delta[l];
+  }
+}
+
+Field radiosity_of_layers(const ElementMesh& mesh, const TransportLayers& transport, const VertexField& field,
+                          const PatchSet& elements, const Field& E, std::span<const Layer> layers) {
+  const int channels = elements.channels;
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  Field E_layers(leaves.size(), field.layers.channels);
+  std::size_t i = 0;
+  for (std::size_t j = 0; j < transport.leaves.size(); ++j) {
+    const auto parts = std::span(leaves).subspan(i, mesh.leaves_under(transport.leaves[j]));
+    const std::vector<double> gain = delta_gains(mesh, parts, field, lanes_of(transport.delta_light, j));
+    for (const std::uint32_t leaf : parts) {
+      const std::span<double> own = lanes_of(E_layers, i);
+      for (const std::uint32_t p : mesh.points_of(leaf)) {
+        add(lanes_of(field.layers, p), 1, own);
+        const std::span<const double> delta = lanes_of(field.delta_layers, p);
+        for (std::size_t l = 0; l < own.size(); ++l) own[l] += (gain[l] - 1) * delta[l];
+      }
+      if (any_channel_dark(own, channels)) std::ranges::copy(lanes_of(transport.E, j), own.begin());
+      divide_among_layers(E[i], channels, own);
+      ++i;
+    }
+  }
+  Field B(leaves.size(), field.layers.channels);
+  for (std::size_t s = 0; s < layers.size(); ++s) {
+    const Field E_of_layer = one_layer(E_layers, s, channels);
+    for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+      const Spectrum out = elements.M[leaf] * layers[s].surfaces + elements.scattered(E_of_layer, leaf);
+      for (int c = 0; c < channels; ++c) B.at(leaf, static_cast<int>(s) * channels + c) = out[c];
+    }
+  }
+  return B;
+}
+
+}  // namespace clerestory

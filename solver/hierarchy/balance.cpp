@@ -23,8 +23,9 @@ constexpr int kMostSweeps = 1'000;  // safety net; reaching it sets StopReason::
 template <std::size_t L>
 class System {
  public:
+  /// first_guess  freed with the last of its lanes.
   System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& M,
-         const Field& E_direct, const Field& first_guess, std::size_t first)
+         const Field& E_direct, Field& first_guess, std::size_t first)
       : p_(patches),
         transport_(transport),
         n_(patches.patch_count()),
@@ -55,6 +56,7 @@ class System {
       for (std::size_t i = 0; i < n_; ++i) B_[i] = load(first_guess, i);
     else
       B_ = source_;
+    if (first + L >= lanes) first_guess = {};
     if constexpr (kBySteps) {  // from B = 0: what is missing is all that is sent
       r_.swap(source_);
       FB_.assign(n_, {});
@@ -188,9 +190,8 @@ struct Sweeps {
   StopReason stop = StopReason::converged;
 };
 
-/// E_direct becomes E in some of its lanes.
 template <std::size_t L>
-Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor, Field& E) {
+Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor) {
   Sweeps done;
   for (done.residual = system.residual(); done.residual > residual; done.residual = system.residual()) {
     if (done.count == kMostSweeps) done.stop = StopReason::iteration_limit;
@@ -199,7 +200,6 @@ Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor, F
     system.sweep();
     ++done.count;
   }
-  system.add_to(E);
   return done;
 }
 
@@ -209,12 +209,12 @@ Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transpo
                  const Field& E_direct, Field B, double residual, const Monitor& monitor) {
   CLERESTORY_ASSERT(M.channels, ==, E_direct.channels);
   Balanced s;
-  s.E = E_direct;
   const auto lanes = static_cast<std::size_t>(E_direct.channels), channels = static_cast<std::size_t>(patches.channels);
   const auto solve = [&]<std::size_t L>(std::size_t first) {
     System<L> system(patches, tree, transport, M, E_direct, B, first);
-    if (first + L >= lanes) B = {};
-    const Sweeps done = sweep_until(system, residual, monitor, s.E);
+    const Sweeps done = sweep_until(system, residual, monitor);
+    if (s.E.value.empty()) s.E = E_direct;
+    system.add_to(s.E);
     s.iterations = std::max(s.iterations, done.count);
     s.residual = std::max(s.residual, done.residual);
     if (done.stop != StopReason::converged) s.stop = done.stop;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "solver/hierarchy/gather_links.h"
-#include "solver/illumination/light_rows.h"
 #include "solver/model/assert.h"
 #include "solver/model/units.h"
 #include "solver/spaces/energy.h"
@@ -23,8 +22,9 @@ constexpr int kMostSweeps = 1'000;  // safety net; reaching it sets StopReason::
 template <std::size_t L>
 class System {
  public:
+  /// first_guess  freed with the last of its lanes.
   System(const PatchSet& patches, const ElementTree& tree, const Transport& transport, const Field& M,
-         const Field& E_direct, const Field& first_guess, std::size_t first)
+         const Field& E_direct, Field& first_guess, std::size_t first)
       : p_(patches),
         transport_(transport),
         n_(patches.patch_count()),
@@ -55,6 +55,7 @@ class System {
       for (std::size_t i = 0; i < n_; ++i) B_[i] = load(first_guess, i);
     else
       B_ = source_;
+    if (first + L >= lanes) first_guess = {};
     if constexpr (kBySteps) {  // from B = 0: what is missing is all that is sent
       r_.swap(source_);
       FB_.assign(n_, {});
@@ -188,9 +189,8 @@ struct Sweeps {
   StopReason stop = StopReason::converged;
 };
 
-/// E_direct becomes E in some of its lanes.
 template <std::size_t L>
-Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor, Field& E) {
+Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor) {
   Sweeps done;
   for (done.residual = system.residual(); done.residual > residual; done.residual = system.residual()) {
     if (done.count == kMostSweeps) done.stop = StopReason::iteration_limit;
@@ -199,8 +199,49 @@ Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor, F
     system.sweep();
     ++done.count;
   }
-  system.add_to(E);
   return done;
+}
+
+Losses on_its_way(const Transport& transport, std::size_t i) {
+  return losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
+}
+
+/// B, and where the light ends.
+void end_of_one(const PatchSet& patches, const Transport& transport, const Field& M, Balanced& s) {
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    const Spectrum radiosity = M[i] + patches.scattered(s.E, i);
+    s.B.set(i, radiosity);
+    s.energy[0] += where_light_ends(patches, i, s.E[i], radiosity, on_its_way(transport, i));
+  }
+}
+
+/// The same for any number: sums by lane of what where_light_ends() says of each leaf [W].
+void end_of_many(const PatchSet& patches, const Transport& transport, const Field& M, Balanced& s) {
+  const auto lanes = static_cast<std::size_t>(M.channels), channels = static_cast<std::size_t>(patches.channels);
+  std::vector<double> absorbed(lanes), escaped(lanes);
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    const Losses loss = on_its_way(transport, i);
+    const Spectrum rho = patches.rho[i], albedo = patches.albedo(i);
+    const double *E = &s.E.value[i * lanes], *emitted = &M.value[i * lanes];
+    double* B = &s.B.value[i * lanes];
+    for (std::size_t l = 0; l < lanes; ++l) B[l] = emitted[l] + rho.c[l % channels] * E[l];
+    for (const PatchSet::Behind& other : patches.patches_behind(i))
+      for (std::size_t l = 0; l < lanes; ++l)
+        B[l] += patches.tau[i].c[l % channels] * s.E.value[other.patch * lanes + l] * other.share;
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const std::size_t c = l % channels;
+      absorbed[l] += patches.area[i] * ((1 - albedo.c[c]) * E[l] + loss.lost.c[c] * B[l]);
+      escaped[l] += patches.area[i] * loss.escapes.c[c] * B[l];
+    }
+  }
+  const auto mean = [&](const std::vector<double>& flux, std::size_t first) {
+    return luminous_mean(channels == 1 ? Spectrum(flux[first])
+                                       : Spectrum(flux[first], flux[first + 1], flux[first + 2]));
+  };
+  for (std::size_t k = 0; k < s.energy.size(); ++k) {
+    s.energy[k].absorbed = mean(absorbed, k * channels);
+    s.energy[k].escaped = mean(escaped, k * channels);
+  }
 }
 
 }  // namespace
@@ -209,12 +250,12 @@ Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transpo
                  const Field& E_direct, Field B, double residual, const Monitor& monitor) {
   CLERESTORY_ASSERT(M.channels, ==, E_direct.channels);
   Balanced s;
-  s.E = E_direct;
   const auto lanes = static_cast<std::size_t>(E_direct.channels), channels = static_cast<std::size_t>(patches.channels);
   const auto solve = [&]<std::size_t L>(std::size_t first) {
     System<L> system(patches, tree, transport, M, E_direct, B, first);
-    if (first + L >= lanes) B = {};
-    const Sweeps done = sweep_until(system, residual, monitor, s.E);
+    const Sweeps done = sweep_until(system, residual, monitor);
+    if (s.E.value.empty()) s.E = E_direct;
+    system.add_to(s.E);
     s.iterations = std::max(s.iterations, done.count);
     s.residual = std::max(s.residual, done.residual);
     if (done.stop != StopReason::converged) s.stop = done.stop;
@@ -227,18 +268,10 @@ Balanced balance(const PatchSet& patches, const ElementTree& tree, const Transpo
 
   s.B = Field(patches.patch_count(), E_direct.channels);
   s.energy.resize(lanes / channels);
-  for (std::size_t k = 0; k < s.energy.size(); ++k) {
-    const bool alone = s.energy.size() == 1;
-    const Field E_of_one = alone ? Field{} : one_layer(s.E, k, patches.channels);
-    const Field M_of_one = alone ? Field{} : one_layer(M, k, patches.channels);
-    const Field& E = alone ? s.E : E_of_one;
-    for (std::size_t i = 0; i < patches.patch_count(); ++i) {
-      const Spectrum radiosity = (alone ? M : M_of_one)[i] + patches.scattered(E, i);
-      for (std::size_t c = 0; c < channels; ++c) s.B.value[i * lanes + k * channels + c] = radiosity.c[c];
-      const Losses on_its_way = losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
-      s.energy[k] += where_light_ends(patches, i, E[i], radiosity, on_its_way);
-    }
-  }
+  if (s.energy.size() == 1)
+    end_of_one(patches, transport, M, s);
+  else
+    end_of_many(patches, transport, M, s);
   return s;
 }
 

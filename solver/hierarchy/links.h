@@ -22,7 +22,7 @@ inline constexpr double kLinksToSpare = 32e6;
 /// from, and hands each down by its members' orientation: E_m = sum over rows of share_m,row * row.
 struct Receiver {
   std::uint32_t first_leaf, leaf_end;
-  std::uint32_t rows = 1;
+  std::uint16_t rows = 1;
   bool hands_down = false;
   std::uint32_t views = 0;  ///< of the sky
   float view_weight = 0;    ///< of each of them [1]

@@ -148,9 +148,9 @@ void eight_groups(const std::string& scenes) {
   row("layers: balance of one group", 1e3 * one, "ms CPU", "");
   row("layers: balance of eight groups against one", eight / one, "1", "1.3");
   row("layers: balance of eight groups against all as one", eight_again / together, "1", "");
-  row("layers: sum against the joint solve on elements, flux", flux_of_difference(solve_for(kept, layers).E, joint),
+  row("layers: sum against the joint solve on elements by flux", flux_of_difference(solve_for(kept, layers).E, joint),
       "1", "1e-6");
-  row("layers: sum against joint on elements, both in balance to 1e-9, worst",
+  row("layers: sum against joint on the worst element when both are in balance to 1e-9",
       worst_sum(solve_for(kept, layers, 1e-9).E, solve_for(kept, {&all, 1}, 1e-9).E), "1", "1e-6");
 
   const auto [whole, layered] = fastest(
@@ -216,7 +216,7 @@ void replaced_sky(const std::string& scenes) {
   row("layers: sky replaced against a fresh solve: total", 100 * off.total, "%", "");
   row("layers: two fresh solves against each other: total", 100 * noise.total, "%", "");
   row("layers: time for the replaced sky", 1e3 * by_kept, "ms CPU", "");
-  row("layers: fresh solve against the replaced sky, time", by_rays / by_kept, "1", "");
+  row("layers: time of a fresh solve against the replaced sky", by_rays / by_kept, "1", "");
 }
 
 }  // namespace

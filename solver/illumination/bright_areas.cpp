@@ -16,6 +16,8 @@ constexpr std::size_t kMostBrightAreas = 64;  ///< every point asks each of them
 constexpr std::size_t kFewPlanes = 4;         ///< one glowing wall and what it lights best
 constexpr double kDark = 1e-3;                ///< of the brightest patch: does not count as light
 constexpr double kLeastFilled = 1.0 / 3;      ///< of the hull; emptier ones waste most of their rays
+constexpr double kFull = 0.8;                 ///< of the brightest patch: has all of a spot's light
+constexpr double kDim = 0.2;                  ///< of the brightest patch: no part of a spot
 constexpr double kSameDirection = 1 - 1e-9;   ///< cosine: rounding of normals of one plane
 
 struct Corner {
@@ -51,6 +53,19 @@ std::vector<Flat> convex_hull(std::vector<Flat> points) {
   run(points.begin(), points.end());
   run(points.rbegin(), points.rend());
   return hull;
+}
+
+/// Takes away what is dim around a spot that has most of the light: rays at its hull would mostly miss it.
+void keep_spot(const PatchSet& patches, const Field& glow, std::vector<std::uint32_t>& group) {
+  double brightest = 0, flux = 0, full_flux = 0;
+  for (const std::uint32_t p : group) brightest = std::max(brightest, luminous_mean(glow[p]));
+  for (const std::uint32_t p : group) {
+    const double B = luminous_mean(glow[p]);
+    flux += patches.area[p] * B;
+    if (B >= kFull * brightest) full_flux += patches.area[p] * B;
+  }
+  if (full_flux > 0.5 * flux)
+    std::erase_if(group, [&](std::uint32_t p) { return luminous_mean(glow[p]) < kDim * brightest; });
 }
 
 LightArea area_of(const PatchSet& patches, const std::vector<std::uint32_t>& group, const Field& glow) {
@@ -124,6 +139,7 @@ BrightAreas find_bright_areas(const PatchSet& patches, const LightSampler& sampl
     if (luminous_mean(glow[i]) > kDark * brightest) glowing.push_back(i);
   std::vector<std::vector<std::uint32_t>> groups = plane_groups(patches, glowing);
   if (groups.size() > kFewPlanes) groups = plane_groups(patches, bright);
+  for (auto& group : groups) keep_spot(patches, glow, group);
   const auto flux = [&](const std::vector<std::uint32_t>& group) {
     return std::accumulate(group.begin(), group.end(), 0.0,
                            [&](double sum, std::uint32_t p) { return sum + patches.area[p] * luminous_mean(glow[p]); });

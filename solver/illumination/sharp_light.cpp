@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
@@ -62,10 +63,17 @@ LightSeen SharpLight::seen(const Vec3& p, const Vec3& n) const {
   return seen == 0 ? LightSeen::none : seen == 0xffff ? LightSeen::all : LightSeen::part;
 }
 
-std::vector<SharpLight> sharp_lights(const Problem& problem) {
+std::vector<SharpLight> sharp_lights(const Problem& problem, std::size_t most) {
   std::vector<SharpLight> lights;
   for (const PlacedSun& sun : problem.lights.suns) lights.emplace_back(problem, sun);
-  for (const PlacedLuminaire& luminaire : problem.lights.luminaires) lights.emplace_back(problem, luminaire);
+  std::vector<std::pair<double, std::uint32_t>> by_power;
+  for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
+    by_power.emplace_back(-luminous_mean(power(luminaire)), static_cast<std::uint32_t>(by_power.size()));
+  if (by_power.size() > most) {
+    std::sort(by_power.begin(), by_power.end());
+    by_power.resize(most);
+  }
+  for (const auto& [less, number] : by_power) lights.emplace_back(problem, problem.lights.luminaires[number]);
   return lights;
 }
 

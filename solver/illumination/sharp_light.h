@@ -39,7 +39,7 @@ class SharpLight {
   const PlacedLuminaire* luminaire_ = nullptr;
 };
 
-/// All of a problem's suns and luminaires, suns first.
-std::vector<SharpLight> sharp_lights(const Problem& problem);
+/// A problem's suns and luminaires, suns first; of more than `most` luminaires those of most power.
+std::vector<SharpLight> sharp_lights(const Problem& problem, std::size_t most);
 
 }  // namespace clerestory

@@ -70,7 +70,7 @@ TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
   const double area = floor.room.patches.total_area();
   ASSERT_GT(floor.cut().cut, 20u);
   const Problem problem = floor.room.problem();
-  const SharpLight sun = sharp_lights(problem).at(0);
+  const SharpLight sun = sharp_lights(problem, 1).at(0);
   double dark = 0, penumbra = 0, mixed = 0;
   for (const std::uint32_t leaf : floor.mesh.leaves()) {
     if (!floor.is_floor(leaf)) continue;
@@ -169,7 +169,7 @@ TEST(ShadowEdges, ThatAreCurvedAreHalvedUntilTheyAreStraight) {
   EXPECT_TRUE(floor.mesh.is_sound());
   double dark = 0;
   const Problem problem = floor.room.problem();
-  const SharpLight sun = sharp_lights(problem).at(0);
+  const SharpLight sun = sharp_lights(problem, 1).at(0);
   for (const std::uint32_t leaf : floor.mesh.leaves()) {
     if (!floor.is_floor(leaf)) continue;
     const auto x = floor.mesh.corner_positions(leaf);

@@ -36,6 +36,33 @@ DeltaLight delta_light(const ElementMesh& mesh, std::span<const std::uint32_t> l
   return found;
 }
 
+/// Sun and luminaire light of the leaves of one element, channel c, so that their mean is the exact one. In proportion
+/// to what their corners have: what is added evenly where it is dark would have to be taken away where there is
+/// nothing. No leaf gets more than the brightest corner has, or the exact mean; what it has too much goes to the
+/// others.
+std::vector<double> put_right(const ElementMesh& mesh, std::span<const std::uint32_t> leaves, const Field& delta_light,
+                              int c, double exact, double mean) {
+  std::vector<double> luminaires(leaves.size(), exact);
+  if (!(mean > 0)) return luminaires;
+  double most = exact, missing = 0, room = 0;
+  for (std::size_t k = 0; k < leaves.size(); ++k) {
+    double at_corners = 0;
+    for (const std::uint32_t p : mesh.points_of(leaves[k])) {
+      at_corners += delta_light.at(p, c) / 3;
+      most = std::max(most, delta_light.at(p, c));
+    }
+    luminaires[k] = at_corners * exact / mean;
+  }
+  for (std::size_t k = 0; k < leaves.size(); ++k) {
+    const double area = mesh[leaves[k]].area, more = luminaires[k] - most;
+    (more > 0 ? missing : room) += area * std::abs(more);
+    luminaires[k] = std::min(luminaires[k], most);
+  }
+  if (missing > 0 && room > 0)
+    for (double& E : luminaires) E += (most - E) * std::min(1.0, missing / room);
+  return luminaires;
+}
+
 Field without_delta_light(const VertexField& field) {
   Field rest = field.E;
   for (std::size_t k = 0; k < rest.value.size(); ++k) rest.value[k] -= field.delta_light.value[k];
@@ -54,14 +81,11 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
   for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
     const auto own = std::span(leaves).subspan(begin, mesh.leaves_under(transport_leaves[j]));
     const DeltaLight gathered = delta_light(mesh, own, field);
-    for (std::size_t k = 0; k < own.size() && gathered.varies; ++k)
-      for (int c = 0; c < E.channels; ++c) {
-        double luminaires = 0;
-        for (const std::uint32_t p : mesh.points_of(own[k])) luminaires += field.delta_light.at(p, c) / 3;
-        // In proportion: what is added evenly where it is dark would have to be taken away where there is nothing.
-        const double exact = coarse.delta_light.at(j, c), mean = gathered.mean[c];
-        E.at(begin + k, c) = rest.at(begin + k, c) + (mean > 0 ? luminaires * exact / mean : exact);
-      }
+    for (int c = 0; c < E.channels && gathered.varies; ++c) {
+      const std::vector<double> luminaires =
+          put_right(mesh, own, field.delta_light, c, coarse.delta_light.at(j, c), gathered.mean[c]);
+      for (std::size_t k = 0; k < own.size(); ++k) E.at(begin + k, c) = rest.at(begin + k, c) + luminaires[k];
+    }
     begin += own.size();
   }
   return E;

@@ -81,15 +81,13 @@ struct Corner {
 /// they take: moved towards the mean of all facets' centroids, a point of a convex edge would sink under the surface.
 void place_samples(const PatchSet& patches, std::span<const Corner> around, std::vector<Facing>& facings,
                    VertexLightmap& map) {
-  constexpr double kAlike = 0.99;          // cosine of 8 degrees: turning a facet so far changes E by little
-  constexpr double kInPlane = 1 - 5e-9;    // 1e-4 rad
-  constexpr double kWayToCentroid = 2e-3;  // far enough from edges for single precision rays, too near to be seen
+  constexpr double kInPlane = 1 - 5e-9;  // 1e-4 rad
   facings.clear();
   for (const auto& [p, k] : around) {
     const Vec3 normal = patches.normal[p];
     const auto x = patches.corner_positions(PatchId{std::size_t{p}});
-    auto facing =
-        std::find_if(facings.begin(), facings.end(), [&](const Facing& f) { return dot(f.normal, normal) > kAlike; });
+    auto facing = std::find_if(facings.begin(), facings.end(),
+                               [&](const Facing& f) { return dot(f.normal, normal) > VertexLightmap::kAlike; });
     if (facing == facings.end()) facing = facings.insert(facings.end(), Facing{normal, {}, 0, 0});
     facing->weight += angle_at(x, k);
     if (dot(facing->normal, normal) < kInPlane) continue;
@@ -99,7 +97,7 @@ void place_samples(const PatchSet& patches, std::span<const Corner> around, std:
   double sum = 0;
   for (const Facing& f : facings) sum += f.weight;
   for (const Facing& f : facings) {
-    map.sample_position.push_back(map.position.back() + f.inward * (kWayToCentroid / f.in_plane));
+    map.sample_position.push_back(map.position.back() + f.inward * (VertexLightmap::kWayToCentroid / f.in_plane));
     map.sample_normal.push_back(f.normal);
     map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
   }

@@ -29,7 +29,7 @@ PointIrradiance gather_at(const Illumination& light, std::size_t count, const Po
                           const RowLight* layers = nullptr);
 
 /// Rows of these places, to be kept: irradiance() of them under other light sends no rays. Where they look is chosen
-/// for this light. 16 bytes a ray: 10 to 60 kB a point.
+/// for this light. 16 bytes a ray: 5 to 30 kB a sensor.
 LightRows gather_rows_at(const Illumination& light, std::size_t count, const PointOf& point_of,
                          const GatherPattern& pattern);
 

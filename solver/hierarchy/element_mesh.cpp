@@ -110,22 +110,16 @@ struct ElementMesh::HalfEdges {
 
   HalfEdges(const PatchSet& patches, const VertexLightmap& map);
 
-  /// The half-edge that starts at corner k of a leaf; faces keep that of their longest edge.
-  HalfEdge at_corner(const Element& leaf, std::size_t k) const {
-    const HalfEdge longest = kernel.halfedge_handle(face_of(leaf));
-    if (k == leaf.edge) return longest;
-    const HalfEdge next = kernel.next_halfedge_handle(longest);
-    return k == (leaf.edge + 1u) % 3 ? next : kernel.next_halfedge_handle(next);
-  }
-  /// Those of all corners of a leaf.
+  /// That of a leaf's longest edge is the one that its face keeps.
+  HalfEdge longest(const Element& leaf) const { return kernel.halfedge_handle(Face(static_cast<int>(leaf.first))); }
+  /// The half-edges that start at the corners of a leaf.
   std::array<HalfEdge, 3> around(const Element& leaf) const {
     std::array<HalfEdge, 3> at;
-    at[leaf.edge] = kernel.halfedge_handle(face_of(leaf));
+    at[leaf.edge] = longest(leaf);
     at[(leaf.edge + 1u) % 3] = kernel.next_halfedge_handle(at[leaf.edge]);
     at[(leaf.edge + 2u) % 3] = kernel.next_halfedge_handle(at[(leaf.edge + 1u) % 3]);
     return at;
   }
-  static Face face_of(const Element& leaf) { return Face(static_cast<int>(leaf.first)); }
 
   std::uint32_t start(HalfEdge h) const { return vertex[kernel.from_vertex_handle(h)]; }
   std::uint32_t end(HalfEdge h) const { return vertex[kernel.to_vertex_handle(h)]; }
@@ -247,7 +241,7 @@ std::array<Vec3, 3> ElementMesh::corner_positions(std::uint32_t e) const {
 }
 
 double ElementMesh::longest_edge(std::uint32_t leaf) const {
-  const HalfEdge h = half_edges_->at_corner(elements_[leaf], elements_[leaf].edge);
+  const HalfEdge h = half_edges_->longest(elements_[leaf]);
   return std::sqrt(edge_key(vertices_, half_edges_->start(h), half_edges_->end(h)).length2);
 }
 
@@ -262,7 +256,7 @@ void ElementMesh::split(std::span<const std::uint32_t> marked) {
         path.pop_back();
         continue;
       }
-      const HalfEdge back = kernel.opposite_halfedge_handle(half_edges_->at_corner(here, here.edge));
+      const HalfEdge back = kernel.opposite_halfedge_handle(half_edges_->longest(here));
       const bool waits = !kernel.is_boundary(back) && kernel.halfedge_handle(kernel.face_handle(back)) != back;
       if (waits) {
         path.push_back(half_edges_->element_at(back));
@@ -283,6 +277,7 @@ void ElementMesh::cut(std::uint32_t leaf, std::size_t k, double at) {
 /// A leaf about to be parted at an edge.
 struct ElementMesh::Parting {
   std::uint32_t element;
+  std::uint8_t edge;
   Corners point;  ///< where the edge starts, where it ends, at the apex
   Vec3 apex;
 };
@@ -291,20 +286,18 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
   Kernel& kernel = half_edges_->kernel;
   const auto parting = [&](HalfEdge h) {
     const HalfEdge to_apex = kernel.next_halfedge_handle(h), from_apex = kernel.next_halfedge_handle(to_apex);
-    return Parting{half_edges_->element_at(h),
+    const std::uint32_t element_there = half_edges_->element_at(h);
+    const auto around = half_edges_->around(elements_[element_there]);
+    return Parting{element_there,
+                   static_cast<std::uint8_t>(std::ranges::find(around, h) - around.begin()),
                    {half_edges_->point[h], half_edges_->point[to_apex], half_edges_->point[from_apex]},
                    vertices_[half_edges_->start(from_apex)]};
   };
-  const HalfEdge h = half_edges_->at_corner(elements_[element], edge), back = kernel.opposite_halfedge_handle(h);
+  const HalfEdge h = half_edges_->around(elements_[element])[edge], back = kernel.opposite_halfedge_handle(h);
   const Vertex start = kernel.from_vertex_handle(h), end = kernel.to_vertex_handle(h);
   const Vec3 place = vertices_[half_edges_->start(h)] * (1 - double{at}) + vertices_[half_edges_->end(h)] * double{at};
   const bool alone = kernel.is_boundary(back);
   const Parting here = parting(h), there = alone ? Parting{} : parting(back);
-  const std::size_t edge_there = alone ? 0 : [&] {
-    std::size_t k = 0;
-    while (half_edges_->at_corner(elements_[there.element], k) != back) ++k;
-    return k;
-  }();
   const bool smooth = !alone && there.point[0] == here.point[1] && there.point[1] == here.point[0];
   const std::uint32_t point = add_point(here, smooth ? &there : nullptr, place);
   const std::uint32_t point_there = alone || smooth ? point : add_point(there, nullptr, place);
@@ -316,12 +309,11 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
   const HalfEdge to_end = kernel.find_halfedge(middle, end), to_start = kernel.find_halfedge(middle, start);
 
   /// Both parts, from the half-edges on either side of the middle; OpenMesh knows nothing of what they carry.
-  const auto part = [&](const Parting& was, std::size_t edge_was, float share, std::uint32_t middle_point,
-                        HalfEdge first, HalfEdge second) {
+  const auto part = [&](const Parting& was, float share, std::uint32_t middle_point, HalfEdge first, HalfEdge second) {
     Element& whole = elements_[was.element];
     Element half = whole;
     half.level = static_cast<std::uint8_t>(whole.level + 1);
-    whole.parted = true, whole.at = share, whole.edge = static_cast<std::uint8_t>(edge_was);
+    whole.parted = true, whole.at = share, whole.edge = was.edge;
     whole.first = static_cast<std::uint32_t>(elements_.size());
     const double area = whole.area;
     const auto add = [&](HalfEdge corner0, const Corners& points, double part_of_area) {
@@ -336,14 +328,12 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
     add(second, {middle_point, was.point[1], was.point[2]}, area * (1 - double{share}));
     ++leaf_count_;
   };
-  part(here, edge, at, point, kernel.opposite_halfedge_handle(to_start), to_end);
+  part(here, at, point, kernel.opposite_halfedge_handle(to_start), to_end);
   // The neighbour's edge runs the other way.
-  if (!alone) part(there, edge_there, 1 - at, point_there, kernel.opposite_halfedge_handle(to_end), to_start);
+  if (!alone) part(there, 1 - at, point_there, kernel.opposite_halfedge_handle(to_end), to_start);
 }
 
 std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, const Vec3& place) {
-  constexpr double kAlike = 0.99;  // as for the lightmap's own points
-  constexpr double kWayToCentroid = 2e-3;
   const auto point = static_cast<std::uint32_t>(points_.position.size());
   const std::uint32_t patch = elements_[here.element].patch;
   points_.position.push_back(place);
@@ -351,11 +341,12 @@ std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, 
   ends_.push_back({here.point[0], here.point[1]});
   const auto sample = [&](const Parting& facet, double weight) {
     const Vec3 to_centroid = (facet.apex - place) / 3;
-    points_.sample_position.push_back(place + to_centroid * kWayToCentroid);
+    points_.sample_position.push_back(place + to_centroid * VertexLightmap::kWayToCentroid);
     points_.sample_normal.push_back(patches_.normal[elements_[facet.element].patch]);
     points_.sample_weight.push_back(weight);
   };
-  const bool bent = other && dot(patches_.normal[patch], patches_.normal[elements_[other->element].patch]) < kAlike;
+  const bool bent =
+      other && dot(patches_.normal[patch], patches_.normal[elements_[other->element].patch]) < VertexLightmap::kAlike;
   sample(here, bent ? 0.5 : 1);
   if (bent) sample(*other, 0.5);
   points_.sample_begin.push_back(static_cast<std::uint32_t>(points_.sample_position.size()));

@@ -76,7 +76,7 @@ class ElementMesh {
   /// Lightmap of leaf_patches(), made of the mesh's own points; E is sized P x channels and zero.
   VertexLightmap leaf_lightmap() &&;
 
-  /// What is wrong with the half-edges, by OpenMesh's own checker; for tests.
+  /// Whether OpenMesh's own checker finds nothing wrong with the half-edges; for tests.
   bool is_sound() const;
 
  private:

@@ -17,7 +17,8 @@
 namespace clerestory {
 namespace {
 
-constexpr double kLongest = 0.5;                              // of elements that are cut: their parts would be thin [m]
+constexpr double kContrast = 0.35;  // of an element's irradiance: lights that give less draw no edge on it
+constexpr double kLongest = 0.5;    // of elements that are cut: their parts would be thin [m]
 constexpr double kLeastAngle = 0.6 * std::numbers::pi / 180;  // of parts, or half of the element's own
 constexpr int kMostRounds = 8;                                // of halving
 /// Pairs of a light and an element that are asked whether one matters to the other: seconds of a core. Beyond, the
@@ -215,8 +216,8 @@ ShadowEdges cut_shadow_edges(ElementMesh& mesh, const Problem& problem, const Fi
     parallel_for(leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end && !monitor.should_stop(); ++i) {
         const LeafInLight leaf_in_light(mesh, leaves[i]);
-        worth[i] = light.open_irradiance(leaf_in_light.centre(), leaf_in_light.normal()) >
-                   options.contrast * luminous_mean(E[i]);
+        worth[i] =
+            light.open_irradiance(leaf_in_light.centre(), leaf_in_light.normal()) > kContrast * luminous_mean(E[i]);
       }
     });
     std::vector<std::uint32_t> candidates;

@@ -10,7 +10,6 @@
 namespace clerestory {
 
 struct ShadowEdgeOptions {
-  double contrast = 0.35;  ///< lights that give less of an element's irradiance than this share draw no edge there [1]
   double shortest_edge = 0;  ///< elements are not halved below this [m]
   std::size_t most_elements = 1'000'000;
 };
@@ -24,7 +23,8 @@ struct ShadowEdges {
 /// Where the sun or a small luminaire draws the edge of a shadow through an element, the element is cut along both ends
 /// of the penumbra, each found on the element's edges by bisection: between them light falls evenly from all to
 /// nothing, beyond them nothing changes. Elements through which an edge does not run straight, from one of their edges
-/// to another, are halved until it does or they are small.
+/// to another, are halved until it does or they are small. Lights that give less than 0.35 of an element's irradiance
+/// draw no edge there.
 ///
 /// Penumbrae narrower than 2 % of an element, but no more than 5 mm, are taken for that wide, so that parts are no
 /// thinner; what comes closer to a corner than half of that goes through the corner. No cut makes an angle below 0.6

@@ -25,7 +25,7 @@ class LeafInLight {
   double length_of(std::size_t k) const { return length(x_[(k + 1) % 3] - x_[k]); }
   /// A point a little inside of edge k, as points of the lightmap are: off what stands on it.
   Vec3 on_edge(std::size_t k, double t) const { return inside(x_[k] * (1 - t) + x_[(k + 1) % 3] * t); }
-  Vec3 inside(const Vec3& p) const { return p + (centre() - p) * 2e-3; }
+  Vec3 inside(const Vec3& p) const { return p + (centre() - p) * VertexLightmap::kWayToCentroid; }
 
  private:
   std::array<Vec3, 3> x_;

@@ -101,20 +101,16 @@ class PatchSampler {
     std::uint32_t number;
     Spectrum sum;
   };
-  static std::vector<OfLight>& found() {
-    thread_local std::vector<OfLight> found;
-    return found;
-  }
   void note(std::uint32_t number, const Spectrum& irradiance) const {
-    const auto known = std::ranges::find(found(), number, &OfLight::number);
-    if (known == found().end())
-      found().push_back({number, irradiance});
+    const auto known = std::ranges::find(found_, number, &OfLight::number);
+    if (known == found_.end())
+      found_.push_back({number, irradiance});
     else
       known->sum += irradiance;
   }
   Spectrum kept(const Spectrum& E, int rays) const {
     if (row_)
-      for (const OfLight& light : found()) row_->push_back(RowEntry::of_light(light.number, light.sum / rays));
+      for (const OfLight& light : found_) row_->push_back(RowEntry::of_light(light.number, light.sum / rays));
     return E;
   }
 
@@ -127,7 +123,7 @@ class PatchSampler {
   Tally look(std::uint64_t key, int count, const Light& light) const {
     const RayScene& rays = problem_.rays;
     Tally tally;
-    found().clear();
+    found_.clear();
     auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
       const Spectrum arrives = load.irradiance * rays.glass_transmittance(from, to);
       tally.sum += arrives;
@@ -161,6 +157,7 @@ class PatchSampler {
   std::uint64_t key_;
   const DirectOptions& options_;
   LightRow* row_;
+  mutable std::vector<OfLight> found_;
 };
 
 Spectrum from_luminaire(const Lights& lights, std::uint32_t number, const PatchSampler& patch) {
@@ -360,12 +357,6 @@ void balance_luminaires(const Problem& problem, DirectLight& direct, const Direc
   direct.rays += count * rays;
 }
 
-double total_flux_of(const PatchSet& patches, const Field& E) {
-  double flux = 0;
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) flux += patches.area[i] * luminous_mean(E[i]);
-  return flux;
-}
-
 /// Rows of all patches in one, and what suns bring in.
 void keep(const Problem& problem, const std::vector<LightRow>& row_of_patch, DirectRows& rows) {
   const std::size_t luminaires = problem.lights.luminaires.size();
@@ -489,7 +480,7 @@ DirectLayers direct_layers(const PatchSet& patches, const DirectRows& rows, std:
         light.add({&e, 1}, (e.is_of_sky() ? out.sky : out.delta_light).value.data() + i * lanes);
   });
   for (std::size_t s = 0; s < layers.size(); ++s) {
-    out.energy[s].emitted += total_flux_of(patches, one_layer(out.sky, s, patches.channels));
+    out.energy[s].emitted += total_flux(patches, one_layer(out.sky, s, patches.channels));
     for (std::size_t k = 0; k < std::min(rows.sources.size(), layers[s].lights.size()); ++k)
       out.energy[s] += rows.sources[k].energy_at(layers[s].lights[k]);
   }

@@ -19,7 +19,6 @@
 #include "solver/methods/progressive.h"
 #include "solver/model/units.h"
 #include "solver/spaces/closure.h"
-#include "solver/spaces/energy.h"
 
 namespace clerestory {
 namespace {

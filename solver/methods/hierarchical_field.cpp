@@ -17,6 +17,21 @@ struct DeltaLight {
   bool varies = false;
 };
 
+/// Points of leaves across which the edge of such light runs, parts between the ends of a penumbra apart.
+std::vector<bool> points_at_edges(const ElementMesh& mesh, std::span<const std::uint32_t> leaves,
+                                  const VertexField& field) {
+  constexpr double kEdge = 0.5;  // of the brighter corner
+  std::vector<bool> at_edge(field.E.size());
+  for (const std::uint32_t leaf : leaves) {
+    const auto point = mesh.points_of(leaf);
+    const auto delta = [&](std::size_t k) { return luminous_mean(field.delta_light[point[k]]); };
+    const auto [low, high] = std::minmax({delta(0), delta(1), delta(2)});
+    if (high - low > kEdge * high && !mesh[leaf].penumbra)
+      for (const std::uint32_t p : point) at_edge[p] = true;
+  }
+  return at_edge;
+}
+
 DeltaLight delta_light(const ElementMesh& mesh, std::span<const std::uint32_t> leaves, const VertexField& field) {
   constexpr double kVaries = 0.1;  // less is left to the vertices, which know it as well
   DeltaLight found;
@@ -71,12 +86,15 @@ Field without_delta_light(const VertexField& field) {
 
 /// Irradiance of the leaves from that at their vertices; where sun or luminaire light varies among the corners of what
 /// was one element for transport, their mean of it is put right by the exact flux that the transport found there.
+/// Beside an edge the gradients tell of the edge, and not of how the light goes on: there it is the mean of the
+/// corners.
 Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
                       const HierarchicalSolution& coarse, const VertexField& field) {
   Field E = leaf_irradiance(mesh, field.E);
   if (coarse.delta_light.value.empty()) return E;
   const Field rest = leaf_irradiance(mesh, without_delta_light(field));
   const std::vector<std::uint32_t> leaves = mesh.leaves();
+  const std::vector<bool> at_edge = points_at_edges(mesh, leaves, field);
   std::size_t begin = 0;
   for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
     const auto own = std::span(leaves).subspan(begin, mesh.leaves_under(transport_leaves[j]));
@@ -85,6 +103,12 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
       const std::vector<double> luminaires =
           put_right(mesh, own, field.delta_light, c, coarse.delta_light.at(j, c), gathered.mean[c]);
       for (std::size_t k = 0; k < own.size(); ++k) E.at(begin + k, c) = rest.at(begin + k, c) + luminaires[k];
+    }
+    for (std::size_t k = 0; k < own.size() && !gathered.varies; ++k) {
+      const auto p = mesh.points_of(own[k]);
+      if (at_edge[p[0]] || at_edge[p[1]] || at_edge[p[2]])
+        E.set(begin + k,
+              rest[begin + k] + (field.delta_light[p[0]] + field.delta_light[p[1]] + field.delta_light[p[2]]) / 3);
     }
     begin += own.size();
   }

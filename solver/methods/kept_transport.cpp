@@ -5,7 +5,6 @@
 
 #include "solver/hierarchy/sky_views.h"
 #include "solver/model/assert.h"
-#include "solver/spaces/energy.h"
 
 namespace clerestory {
 namespace {

@@ -66,6 +66,12 @@ PatchSet::Scattering PatchSet::scatter(PatchId p, double pick) const {
 
 double PatchSet::total_area() const { return std::accumulate(area.begin(), area.end(), 0.0); }
 
+double total_flux(const PatchSet& patches, const Field& x) {
+  double sum = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) sum += patches.area[i] * luminous_mean(x[i]);
+  return sum;
+}
+
 void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   PatchSet& p = patches;
   CLERESTORY_ASSERT(wanted.size(), ==, 2 * p.triangle_count());

@@ -105,6 +105,9 @@ struct PatchSet {
   Spectrum albedo(std::size_t p) const { return tau.value.empty() ? rho[p] : rho[p] + tau[p]; }
 };
 
+/// sum A x over the patches [W], luminous mean; x: N x channels, per area, such as M: what surfaces emit.
+double total_flux(const PatchSet& patches, const Field& x);
+
 /// (Re)builds the patch arrays from the triangles: one patch for each side with wanted[2 * t + side], in that order;
 /// glass and mirrors have none, and a diffuser's sides go together. Area, normal, rho and M follow from the materials;
 /// a material's total power is shared over the area of its emitting patches; the back of a one-sided material is black,

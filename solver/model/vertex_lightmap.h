@@ -24,6 +24,11 @@ struct VertexLightmap {
   Field E;                                    ///< P, irradiance [W/m2]; filled after the solve
   Field std_error;                            ///< P, standard error of E; empty unless E is a random estimate
 
+  /// Facets around a point that face as one: cosine of 8 degrees, as turning a facet so far changes E by little.
+  static constexpr double kAlike = 0.99;
+  /// Share of the way to a facet's centroid that a sample is off its point: far enough from edges for single precision
+  /// rays, too near to be seen.
+  static constexpr double kWayToCentroid = 2e-3;
   // Where irradiance is gathered, S samples: one for each direction that the facets around a point face, so one for a
   // point of a flat surface. Point p has samples sample_begin[p] .. sample_begin[p + 1] - 1, of weights that sum to 1.
   std::vector<std::uint32_t> sample_begin;  ///< P + 1

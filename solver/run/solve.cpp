@@ -20,7 +20,6 @@
 #include "solver/run/accuracy.h"
 #include "solver/run/memory_estimate.h"
 #include "solver/spaces/closure.h"
-#include "solver/spaces/energy.h"
 
 namespace clerestory {
 namespace {

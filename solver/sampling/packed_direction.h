@@ -39,7 +39,4 @@ inline Vec3 unpack_direction(std::uint32_t packed) {
   return normalized({u, v, z});
 }
 
-/// The direction of the grid next to d: what is kept and what is looked up at once are then the same.
-inline Vec3 on_grid(const Vec3& d) { return unpack_direction(pack_direction(d)); }
-
 }  // namespace clerestory

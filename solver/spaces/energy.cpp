@@ -11,12 +11,6 @@ Losses losses(const Spectrum& arrives, const Spectrum& escapes) {
   return {escapes, {std::max(0.0, lost[0]), std::max(0.0, lost[1]), std::max(0.0, lost[2])}};
 }
 
-double total_flux(const PatchSet& patches, const Field& x) {
-  double sum = 0;
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) sum += patches.area[i] * luminous_mean(x[i]);
-  return sum;
-}
-
 EnergyBalance where_light_ends(const PatchSet& patches, std::size_t i, const Spectrum& E, const Spectrum& B,
                                const Losses& loss) {
   const Spectrum absorbed = (Spectrum(1.0) - patches.albedo(i)) * E + loss.lost * B;

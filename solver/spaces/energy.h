@@ -20,9 +20,6 @@ struct Losses {
 Losses losses(const Spectrum& arrives, const Spectrum& escapes);
 inline Losses losses(const Closure& closure, std::size_t i) { return losses(closure.arrives[i], closure.escapes[i]); }
 
-/// sum A x over the patches [W], luminous mean; x: N x channels, per area, such as M: what surfaces emit.
-double total_flux(const PatchSet& patches, const Field& x);
-
 /// Where the light ends that arrives at patch i as E and leaves it as B [W/m2], luminous mean:
 ///   absorbed = A ((1 - albedo) E + lost B),     escaped = A escapes B.
 /// Summed over all patches that is the balance of any E and B, for methods that know their losses by the patch. Nothing

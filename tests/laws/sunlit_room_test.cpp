@@ -206,8 +206,7 @@ TEST(SunThroughSlats, MakesNoElementBrighterThanTheSun) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const ResultFile result = read_result(folder / "out.vtp");
   const auto& E = result.of_cells.at("illuminance").values;
-  // What is made of the turning of the gradient adds a tenth at most.
-  EXPECT_LT(*std::max_element(E.begin(), E.end()), 1.1 * 10'000);
+  EXPECT_LT(*std::max_element(E.begin(), E.end()), 10'000);
 }
 
 }  // namespace

@@ -27,15 +27,6 @@ void halve_around(ElementMesh& mesh, const Vec3& place, int times) {
   }
 }
 
-double smallest_angle(const std::array<Vec3, 3>& x) {
-  double smallest = 4;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
-    smallest = std::min(smallest, std::atan2(length(cross(e, f)), dot(e, f)));
-  }
-  return smallest;
-}
-
 class GradedRoom : public ::testing::Test {
  protected:
   GradedRoom() : room(testing::room_with_box(), 0.6), mesh(room.patches, room.map) {
@@ -73,13 +64,13 @@ TEST_F(GradedRoom, KeepsAreaAnglesAndOrientation) {
   EXPECT_NEAR(leaves.total_area(), room.patches.total_area(), 1e-9);
   double before = 4, after = 4;
   for (std::size_t p = 0; p < room.patches.patch_count(); ++p)
-    before = std::min(before, smallest_angle(room.patches.corner_positions(PatchId{p})));
+    before = std::min(before, testing::smallest_angle(room.patches.corner_positions(PatchId{p})));
   for (std::size_t p = 0; p < leaves.patch_count(); ++p) {
     const auto x = leaves.corner_positions(PatchId{p});
     const Vec3 n = cross(x[1] - x[0], x[2] - x[0]);
     EXPECT_NEAR(length(n) / 2, leaves.area[p], 1e-9);
     EXPECT_GT(dot(n, leaves.normal[p]), 0);
-    after = std::min(after, smallest_angle(x));
+    after = std::min(after, testing::smallest_angle(x));
   }
   EXPECT_GT(after, before / 2 - 1e-9);  // Rivara's bound
 }

@@ -1,6 +1,10 @@
 #pragma once
 // Meshed scenes for tests of elements and the field on them.
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "meshing/make_lightmap.h"
 #include "solver/hierarchy/element_mesh.h"
 #include "solver/illumination/place_lights.h"
@@ -20,6 +24,16 @@ inline SceneMaker room_with_box() {
   maker.edit(lamp).sides = 1;
   maker.polygon({{2, 1, 2.4}, {2, 1.5, 2.4}, {2.5, 1.5, 2.4}, {2.5, 1, 2.4}}, lamp);
   return maker;
+}
+
+/// [rad]
+inline double smallest_angle(const std::array<Vec3, 3>& x) {
+  double smallest = 4;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
+    smallest = std::min(smallest, std::atan2(length(cross(e, f)), dot(e, f)));
+  }
+  return smallest;
 }
 
 /// Everything a solve starts from.

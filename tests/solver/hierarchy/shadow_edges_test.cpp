@@ -39,10 +39,10 @@ struct Floor {
 
   explicit Floor(const SceneMaker& maker) : room(maker, 0.3), mesh(room.patches, room.map) {}
 
-  ShadowEdges cut(double lit = 1000, double contrast = 0.2) {
+  ShadowEdges cut(double lit = 1000) {
     Field E(mesh.leaf_count(), 1);
     for (double& x : E.value) x = lit;
-    return cut_shadow_edges(mesh, room.problem(), E, {.contrast = contrast, .shortest_edge = 0.03});
+    return cut_shadow_edges(mesh, room.problem(), E, {.shortest_edge = 0.03});
   }
   bool is_floor(std::uint32_t leaf) const {
     const auto x = mesh.corner_positions(leaf);
@@ -54,15 +54,6 @@ SceneMaker in_the_sun() {
   SceneMaker maker = floor_and_plate();
   maker.scene().lights.suns.push_back({kToSun, Spectrum(1000)});
   return maker;
-}
-
-double smallest_angle(const std::array<Vec3, 3>& x) {
-  double smallest = 4;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 e = x[(k + 1) % 3] - x[k], f = x[(k + 2) % 3] - x[k];
-    smallest = std::min(smallest, std::atan2(length(cross(e, f)), dot(e, f)));
-  }
-  return smallest * 180 / std::numbers::pi;
 }
 
 TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
@@ -110,7 +101,7 @@ TEST(ShadowEdges, LeaveASoundMeshOfTrianglesThatAreNotTooThin) {
     const Vec3 n = cross(x[1] - x[0], x[2] - x[0]);
     EXPECT_GT(dot(n, leaves.normal[p]), 0);
     EXPECT_NEAR(length(n) / 2, leaves.area[p], 1e-9);
-    EXPECT_GT(smallest_angle(x), 0.5);
+    EXPECT_GT(testing::smallest_angle(x), 0.5 * std::numbers::pi / 180);
   }
   // Rays know the parts.
   int met = 0;

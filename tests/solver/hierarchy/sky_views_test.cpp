@@ -19,11 +19,13 @@ TEST(PackedDirection, IsWithinItsGridAndKeepsAxesAndHorizon) {
   for (std::uint32_t k = 0; k < 1000; ++k) {
     const auto u = sobol4(k, 1);
     const Vec3 d = sphere_direction(u[0], u[1]);
-    EXPECT_LT(length(on_grid(d) - d), 1.5e-4);  // half a cell's diagonal is 1 / (2^14 - 1), folded out up to 1.5 times
-    EXPECT_GE(on_grid(d).z * d.z, 0) << "the ground is no sky";
-    EXPECT_EQ(on_grid(on_grid(d)), on_grid(d));
+    const Vec3 packed = unpack_direction(pack_direction(d));
+    EXPECT_LT(length(packed - d), 1.5e-4);  // half a cell's diagonal is 1 / (2^14 - 1), folded out up to 1.5 times
+    EXPECT_GE(packed.z * d.z, 0) << "the ground is no sky";
+    EXPECT_EQ(unpack_direction(pack_direction(packed)), packed);
   }
-  for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) EXPECT_EQ(on_grid(d), d);
+  for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
+    EXPECT_EQ(unpack_direction(pack_direction(d)), d);
 }
 
 Lights uniform_sky(double E, double ground) {

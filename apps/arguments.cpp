@@ -26,13 +26,22 @@ std::string thread_number(const std::string& text) {
   return text + " is not a whole number from 0 to 4096";
 }
 
+std::string seed_number(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == text.npos;  // "-1" would wrap around
+  long long value = 0;
+  if (digits && CLI::detail::lexical_cast(text, value)) return {};
+  return text + " is not a whole number from 0 to 9223372036854775807";
+}
+
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonArguments& arguments) {
   command.add_option("--threads", arguments.threads, "0 = all cores; never changes the result (default: 0)")
       ->type_name("N")
       ->check(silent(thread_number));
-  command.add_option("--seed", arguments.seed, "of all random numbers (default: 1)")->type_name("N");
+  command.add_option("--seed", arguments.seed, "of all random numbers (default: 1)")
+      ->type_name("N")
+      ->check(silent(seed_number));
   command.add_flag("--quiet", arguments.quiet, "no progress and no summary; errors and warnings only");
   command.add_flag("--verbose", arguments.verbose, "say more: a line for each round of the solver");
   command.add_option("--log", arguments.log, "also write all messages here, with the time")->type_name("FILE");

@@ -1,39 +1,93 @@
 #include "apps/console.h"
 
+#include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <utility>
 
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "apps/interrupt.h"
-#include "io/atomic_file.h"
 #include "pipeline/wording.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
+#include "solver/model/version.h"
 
 namespace clerestory {
 
-Console::Console(const CommonArguments& arguments)
+namespace {
+
+/// A log may be replaced before it is known what else the scene is read from: it is not there yet, or an older log.
+bool is_free_for_log(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) == 0) return true;
+  std::string head(32, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  const std::size_t end = head.find_first_not_of("0123456789.e-+", 1);
+  return head[0] == '[' && end != head.npos && end > 1 && head.compare(end, 4, " s] ") == 0;
+}
+
+}  // namespace
+
+Console::Console(const CommonArguments& arguments, std::vector<NamedFile> files)
     : quiet_(arguments.quiet),
       verbose_(arguments.verbose),
-      interrupted_(catch_interrupts()),
+      log_name_(arguments.log),
+      files_(std::move(files)),
+      interrupted_(catch_signals()),
       progress_line_(std::cerr, ::isatty(STDERR_FILENO) == 1, start_) {
   set_thread_count(arguments.threads);
+  refuse_to_overwrite(files_);
   if (!arguments.report.empty()) check_writable(arguments.report);
-  if (arguments.log.empty()) return;
-  log_.open(arguments.log);
-  if (!log_) throw InputError(arguments.log + ": the log cannot be written; choose another place for --log.");
+  if (log_name_.empty()) return;
+  log("", "clerestory " + std::string(kVersion));
+  if (is_free_for_log(log_name_))
+    open_log();
+  else
+    check_writable(log_name_);
+}
+
+Console::~Console() {
+  progress_line_.clear();
+  log_ends_to(-1);
+  if (log_ >= 0) ::close(log_);
+}
+
+void Console::open_log() {
+  AtomicFile file(log_name_);
+  file.write(std::exchange(log_head_, {}));
+  file.commit();
+  log_ = file.release();
+  log_ends_to(log_);
+}
+
+void Console::has_read(const std::vector<std::filesystem::path>& files) {
+  refuse_to_overwrite(files_, files);
+  if (!log_name_.empty() && log_ < 0) open_log();
+}
+
+void Console::commit(Outputs& outputs) {
+  if (!unsaid_.empty()) throw InputError(unsaid_ + "; no output is replaced.");
+  outputs.commit();
 }
 
 void Console::log(const char* kind, const std::string& line) {
-  if (log_.is_open()) log_ << "[" << rounded(elapsed(), 4) << " s] " << kind << line << std::endl;
+  if (log_name_.empty()) return;
+  std::string all = "[" + rounded(elapsed(), 4) + " s] " + kind + line + "\n";
+  if (log_ < 0)
+    log_head_ += all;
+  else if (const std::string problem = write_to(log_, all); !problem.empty() && unsaid_.empty())
+    unsaid_ = "--log " + log_name_ + ": cannot be written: " + problem;
 }
 
 void Console::say(const std::string& line) {
   log("", line);
   if (quiet_) return;
   progress_line_.clear();
-  std::cout << line << std::endl;
+  if (const std::string problem = write_to(STDOUT_FILENO, line + "\n"); !problem.empty() && unsaid_.empty())
+    unsaid_ = "standard output cannot be written: " + problem;
 }
 
 void Console::warn(const std::string& line) {
@@ -63,6 +117,8 @@ void Console::progress(std::string_view stage, double done) {
   }
   if (!quiet_) progress_line_.update(stage, done);
 }
+
+void Console::solving() { keep_result_when_interrupted(); }
 
 Monitor Console::monitor() {
   return {[this](std::string_view stage, double done) { progress(stage, done); }, [this] { return should_stop(); }};

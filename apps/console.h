@@ -2,12 +2,13 @@
 // Where a run speaks: results to standard output, all else to standard error, everything into the log.
 
 #include <atomic>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "apps/arguments.h"
+#include "apps/named_files.h"
 #include "apps/progress_line.h"
+#include "io/atomic_file.h"
 #include "pipeline/observer.h"
 #include "solver/model/monitor.h"
 
@@ -15,12 +16,14 @@ namespace clerestory {
 
 class Console : public Observer {
  public:
-  /// Also sets the number of threads and catches Ctrl-C.
-  /// throws  InputError when the log or report cannot be written.
-  explicit Console(const CommonArguments& arguments);
+  /// Also sets the number of threads and catches signals.
+  ///
+  /// files   all that the command line names; the input is the first of them.
+  /// throws  InputError when one that is written is also read, or written twice, or cannot be written.
+  Console(const CommonArguments& arguments, std::vector<NamedFile> files);
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
-  ~Console() override { progress_line_.clear(); }
+  ~Console() override;
 
   /// A line of the answer, to standard output unless --quiet.
   void say(const std::string& line);
@@ -31,8 +34,16 @@ class Console : public Observer {
   /// For --verbose and the log.
   void note(const std::string& line) override;
   void progress(std::string_view stage, double done) override;
+  void solving() override;
   /// After Ctrl-C.
   bool should_stop() const override { return interrupted_.load(); }
+
+  /// The scene is read, from these files. A log that is there already is replaced from now on.
+  /// throws  InputError when one of them is also written.
+  void has_read(const std::vector<std::filesystem::path>& files);
+  /// Renames all outputs, when all that was said was taken, too.
+  /// throws  InputError when the disk is full, under the log or standard output too; no output is replaced then.
+  void commit(Outputs& outputs);
 
   /// For work outside of solve_scene().
   Monitor monitor();
@@ -43,13 +54,18 @@ class Console : public Observer {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  void open_log();
   void log(const char* kind, const std::string& line);
 
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool quiet_, verbose_;
+  std::string log_name_;
+  std::vector<NamedFile> files_;
   const std::atomic<bool>& interrupted_;
   ProgressLine progress_line_;
-  std::ofstream log_;
+  int log_ = -1;          ///< descriptor
+  std::string log_head_;  ///< what the log has before it is open
+  std::string unsaid_;    ///< why a line was not taken: of the log or of standard output
   std::vector<std::string> warnings_;
   std::string stage_;
 };

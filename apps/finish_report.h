@@ -6,7 +6,8 @@
 
 namespace clerestory {
 
-/// Adds what is known last: threads, time, memory, warnings; and writes the report where --report asks for one.
-void finish_report(RunReport& report, const CommonArguments& arguments, const Console& console);
+/// Adds what is known last: threads, time, memory, warnings; and makes the report one of the outputs where --report
+/// asks for it.
+void finish_report(RunReport& report, const CommonArguments& arguments, const Console& console, Outputs& outputs);
 
 }  // namespace clerestory

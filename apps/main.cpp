@@ -3,6 +3,8 @@
 #include <iostream>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "apps/commands/commands.h"
 #include "io/scene_file/nearest_name.h"
@@ -50,6 +52,13 @@ std::string usage_problem(const CLI::App& program, const CLI::ParseError& error)
   return "'" + word + "' is one argument too many";
 }
 
+/// Whoever started this may have closed standard input, output or error. The first files to be opened would get their
+/// numbers, and every message would go into them.
+void open_standard_files() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(number, F_GETFD) < 0) ::open("/dev/null", number == STDIN_FILENO ? O_RDONLY : O_WRONLY);
+}
+
 int run_program(int argc, char** argv) {
   CLI::App program("Clerestory: where light goes in a building, by radiosity", "clerestory");
   program.set_version_flag("--version", "clerestory " + std::string(kVersion));
@@ -72,4 +81,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 }  // namespace clerestory
 
-int main(int argc, char** argv) { return clerestory::run_program(argc, argv); }
+int main(int argc, char** argv) {
+  clerestory::open_standard_files();
+  return clerestory::run_program(argc, argv);
+}

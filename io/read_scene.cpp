@@ -29,7 +29,10 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
   Scene scene;
   scene.file = file.string();
   if (options.sky) scene.lights.sky = sky_of_option(*options.sky);
-  place_model(scene, read_model(file), file, placement, [](Material&) { return false; });
+  const Model model = read_model(file);
+  scene.files = model.files;
+  scene.files.push_back(file);
+  place_model(scene, model, file, placement, [](Material&) { return false; });
   return scene;
 }
 

@@ -183,7 +183,7 @@ std::vector<Figure> repeatable_figures(const RunReport& r) {
   return out;
 }
 
-void write_report(const std::filesystem::path& file, const RunReport& report) {
+void write_report(AtomicFile& file, const RunReport& report) {
   Json json;
   for (const Figure& figure : repeatable_figures(report)) set(json, figure);
   for (const Figure& figure : run_figures(report)) set(json, figure);
@@ -194,7 +194,13 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   json["warnings"] = report.warnings;
   json["left_out"] = report.left_out;
   // Names from models may hold bytes that are no UTF-8; they must not stop the report.
-  write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+void write_report(const std::filesystem::path& file, const RunReport& report) {
+  AtomicFile whole(file);
+  write_report(whole, report);
+  whole.commit();
 }
 
 }  // namespace clerestory

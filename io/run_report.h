@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "io/atomic_file.h"
 #include "solver/model/mesh_report.h"
 #include "solver/model/scene.h"
 #include "solver/model/solution.h"
@@ -73,7 +74,8 @@ std::string stop_name(StopReason stop);
 /// The figures that are the same for every run with these settings: no times, no memory, no thread count.
 std::vector<Figure> repeatable_figures(const RunReport& report);
 
-/// Writes the report as JSON, atomically.
+/// Writes the report as JSON, into a file that the caller commits or a whole one.
+void write_report(AtomicFile& file, const RunReport& report);
 void write_report(const std::filesystem::path& file, const RunReport& report);
 
 }  // namespace clerestory

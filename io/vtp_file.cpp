@@ -34,8 +34,7 @@ void set_points(vtkPolyData* data, const std::vector<Vec3>& local, const Vec3& o
   data->SetPoints(points);
 }
 
-void write_vtp(const std::filesystem::path& destination, vtkPolyData* data) {
-  AtomicFile file(destination);
+void write_vtp(AtomicFile& file, vtkPolyData* data) {
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetFileName(file.path().c_str());
   writer->SetInputData(data);
@@ -44,8 +43,7 @@ void write_vtp(const std::filesystem::path& destination, vtkPolyData* data) {
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);  // 6 halves the speed and saves 3 % on float fields
   if (writer->Write() == 0 || writer->GetErrorCode() != 0)
-    throw InputError(destination.string() + ": could not be written; is the disk full?");
-  file.commit();
+    file.refuse("the disk is full, or a limit of the system is reached");
 }
 
 }  // namespace clerestory

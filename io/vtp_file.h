@@ -2,13 +2,13 @@
 // What all .vtp files of ours have in common. For .cpp files of io/ only: VTK shows.
 
 #include <cstddef>
-#include <filesystem>
 #include <vector>
 
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
 
+#include "io/atomic_file.h"
 #include "solver/model/vec.h"
 
 class vtkPolyData;
@@ -36,6 +36,6 @@ void set_points(vtkPolyData* data, const std::vector<Vec3>& local, const Vec3& o
 /// XML with the data inline, zlib in base64. Equal data give equal bytes.
 ///
 /// throws  InputError when the file cannot be written.
-void write_vtp(const std::filesystem::path& destination, vtkPolyData* data);
+void write_vtp(AtomicFile& file, vtkPolyData* data);
 
 }  // namespace clerestory

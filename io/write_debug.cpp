@@ -14,7 +14,7 @@ namespace clerestory {
 namespace {
 
 template <std::size_t Corners>
-void write_shapes(const std::filesystem::path& file, const DebugShapes<Corners>& all, const Vec3& origin) {
+void write_shapes(AtomicFile& file, const DebugShapes<Corners>& all, const Vec3& origin) {
   vtkNew<vtkPolyData> data;
   std::vector<Vec3> points;
   vtkNew<vtkCellArray> cells;
@@ -51,12 +51,13 @@ void check_debug_folder(const std::filesystem::path& folder) {
   for (const auto& file : debug_files(folder)) check_writable(file);
 }
 
-void write_debug(const std::filesystem::path& folder, const HierarchyDebug& debug, const Vec3& origin) {
+void write_debug(Outputs& outputs, const std::filesystem::path& folder, const HierarchyDebug& debug,
+                 const Vec3& origin) {
   const auto [hierarchy, links, rays, error] = debug_files(folder);
-  write_shapes(hierarchy, debug.hierarchy, origin);
-  write_shapes(links, debug.links, origin);
-  write_shapes(rays, debug.rays, origin);
-  write_shapes(error, debug.error, origin);
+  write_shapes(outputs.open(hierarchy), debug.hierarchy, origin);
+  write_shapes(outputs.open(links), debug.links, origin);
+  write_shapes(outputs.open(rays), debug.rays, origin);
+  write_shapes(outputs.open(error), debug.error, origin);
 }
 
 }  // namespace clerestory

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 
+#include "io/atomic_file.h"
 #include "solver/model/hierarchy_debug.h"
 
 namespace clerestory {
@@ -19,6 +20,7 @@ void check_debug_folder(const std::filesystem::path& folder);
 ///
 /// origin  of the local frame [m].
 /// throws  InputError when a file cannot be written; std::runtime_error when a value is not finite.
-void write_debug(const std::filesystem::path& folder, const HierarchyDebug& debug, const Vec3& origin);
+void write_debug(Outputs& outputs, const std::filesystem::path& folder, const HierarchyDebug& debug,
+                 const Vec3& origin);
 
 }  // namespace clerestory

@@ -132,8 +132,8 @@ Quality quality(const std::array<Vec3, 3>& p, double area) {
 
 }  // namespace
 
-void write_result(const std::filesystem::path& file, const PatchSet& patches, const VertexLightmap& lightmap,
-                  const Solution& solution, std::optional<double> daylight_reference, const RunReport& report) {
+void write_result(AtomicFile& file, const PatchSet& patches, const VertexLightmap& lightmap, const Solution& solution,
+                  std::optional<double> daylight_reference, const RunReport& report) {
   vtkNew<vtkPolyData> data;
   set_points(data, lightmap.position, patches.origin);
   vtkNew<vtkCellArray> cells;
@@ -153,7 +153,14 @@ void write_result(const std::filesystem::path& file, const PatchSet& patches, co
   write_vtp(file, data);
 }
 
-void write_patches(const std::filesystem::path& file, const PatchSet& patches, const RunReport& report) {
+void write_result(const std::filesystem::path& file, const PatchSet& patches, const VertexLightmap& lightmap,
+                  const Solution& solution, std::optional<double> daylight_reference, const RunReport& report) {
+  AtomicFile whole(file);
+  write_result(whole, patches, lightmap, solution, daylight_reference, report);
+  whole.commit();
+}
+
+void write_patches(AtomicFile& file, const PatchSet& patches, const RunReport& report) {
   vtkNew<vtkPolyData> data;
   set_points(data, patches.vertices, patches.origin);
   vtkNew<vtkCellArray> cells;
@@ -174,6 +181,12 @@ void write_patches(const std::filesystem::path& file, const PatchSet& patches, c
   add_field_data(data, patches, report);
   to->SetActiveScalars("min_angle");
   write_vtp(file, data);
+}
+
+void write_patches(const std::filesystem::path& file, const PatchSet& patches, const RunReport& report) {
+  AtomicFile whole(file);
+  write_patches(whole, patches, report);
+  whole.commit();
 }
 
 }  // namespace clerestory

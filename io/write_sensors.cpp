@@ -17,7 +17,7 @@ void append(std::string& row, double value) {
 
 }  // namespace
 
-void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E) {
+void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const Field& E) {
   std::string text = "x,y,z,nx,ny,nz,illuminance";
   for (int k = 0; k < E.channels; ++k) text += ",irradiance_" + std::to_string(k);
   text += '\n';
@@ -34,7 +34,13 @@ void write_sensors(const std::filesystem::path& file, std::span<const SensorPoin
     }
     text += '\n';
   }
-  write_file(file, text);
+  file.write(text);
+}
+
+void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E) {
+  AtomicFile whole(file);
+  write_sensors(whole, points, E);
+  whole.commit();
 }
 
 }  // namespace clerestory

@@ -4,13 +4,16 @@
 #include <filesystem>
 #include <span>
 
+#include "io/atomic_file.h"
 #include "solver/model/channels.h"
 #include "solver/model/sensors.h"
 
 namespace clerestory {
 
 /// One row a point, in the order given: x,y,z,nx,ny,nz,illuminance [lx],irradiance_0[,irradiance_1,irradiance_2]
-/// [W/m2], each the shortest decimal that reads back as the same number. Written atomically.
+/// [W/m2], each the shortest decimal that reads back as the same number. Into a file that
+/// the caller commits, or a whole one.
+void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const Field& E);
 void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E);
 
 }  // namespace clerestory

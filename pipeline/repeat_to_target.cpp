@@ -50,7 +50,8 @@ class StageTimes {
 };
 
 Clock::time_point deadline(const Settings& s) {
-  if (!s.time_limit) return Clock::time_point::max();
+  constexpr double kNever = 1e9;  // 30 years; a clock that counts nanoseconds ends after 290
+  if (!s.time_limit || *s.time_limit > kNever) return Clock::time_point::max();
   return s.start.value_or(Clock::now()) +
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*s.time_limit));
 }

@@ -32,6 +32,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         Solved out;
         std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, monitor, seconds);
         if (!prepared) return {};
+        observer.solving();
         auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
         const Problem problem = prepared->scene.problem();
         if (std::exchange(first, false)) warn_about_places(problem, scene, sensors, observer);

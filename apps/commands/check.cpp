@@ -93,6 +93,7 @@ void say_lights(const Scene& scene, Console& console) {
 
 ExitCode check_command(const Arguments& arguments, Console& console) {
   const Scene scene = read_scene(arguments.input, arguments.read);
+  console.has_read(scene.files);
   const Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   warn_about_scene(scene, console);
   RunReport report = new_report(arguments.input);
@@ -118,7 +119,9 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   report.repairs = repairs;
   report.counts.triangles = patches.triangle_count();
   report.counts.sensors = sensors.sensor_count();
-  finish_report(report, arguments.common, console);
+  Outputs outputs;
+  finish_report(report, arguments.common, console, outputs);
+  console.commit(outputs);
   return kDone;
 }
 

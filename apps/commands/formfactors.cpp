@@ -112,6 +112,7 @@ std::string four_digits(double value) {
 ExitCode formfactors_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.input, arguments.read);
+  console.has_read(scene.files);
   for (const std::string& warning : scene.warnings) console.note(warning);
   const PatchSet patches = faces_as_patches(scene);
   if (patches.patch_count() == 0)
@@ -130,7 +131,8 @@ ExitCode formfactors_command(const Arguments& arguments, Console& console) {
     console.warn("interrupted before the factors were complete; nothing is written.");
     return kInterrupted;
   }
-  write_file(arguments.output, as_csv(factors, groups));
+  Outputs outputs;
+  outputs.open(arguments.output).write(as_csv(factors, groups));
 
   console.say(arguments.input + ": " + counted(groups.name.size(), "group") + ", " +
               counted(patches.patch_count(), "triangle") + "; " + std::to_string(factors.pairs_unblocked) +
@@ -145,7 +147,8 @@ ExitCode formfactors_command(const Arguments& arguments, Console& console) {
   report.counts.triangles = patches.triangle_count();
   report.counts.elements = patches.patch_count();
   report.counts.rays = factors.rays;
-  finish_report(report, arguments.common, console);
+  finish_report(report, arguments.common, console, outputs);
+  console.commit(outputs);
   console.say("results " + arguments.output);
   return kDone;
 }

@@ -26,6 +26,7 @@ struct Arguments {
 ExitCode mesh_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.input, arguments.read);
+  console.has_read(scene.files);
   const Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   warn_about_scene(scene, console);
   RunReport report = new_report(arguments.input);
@@ -43,12 +44,14 @@ ExitCode mesh_command(const Arguments& arguments, Console& console) {
   report.counts.triangles = patches.triangle_count();
   report.counts.elements = patches.patch_count();
   report.counts.dark_sides = lit.dark_sides;
-  write_patches(arguments.output, patches, report);
+  Outputs outputs;
+  write_patches(outputs.open(arguments.output), patches, report);
 
   console.say(arguments.input + ": " + counted(report.counts.elements, "patch side") + " on " +
               counted(report.counts.triangles, "triangle") + ", " + counted(lit.dark_sides, "dark side") + " left out");
   say_mesh(repairs, console);
-  finish_report(report, arguments.common, console);
+  finish_report(report, arguments.common, console, outputs);
+  console.commit(outputs);
   console.say("results " + arguments.output);
   return kDone;
 }

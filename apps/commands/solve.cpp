@@ -5,6 +5,7 @@
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
 #include "apps/finish_report.h"
+#include "apps/interrupt.h"
 #include "apps/run.h"
 #include "apps/solve_report.h"
 #include "io/atomic_file.h"
@@ -53,6 +54,16 @@ void say_why(ExitCode code, const Solved& solved, Console& console) {
                  (solved.error ? ": it is " + error_line(*solved.error) : "") + "; the result is written.");
 }
 
+/// What a time limit may go over before there is a result: some of that is worth more than none.
+constexpr double kGrace = 1;
+
+void end_without_result_after(const std::optional<double>& time_limit, const Console& console) {
+  constexpr double kNeverSeconds = 1e8;
+  if (time_limit && *time_limit < kNeverSeconds)
+    end_without_result_at(console.start() +
+                          std::chrono::microseconds(static_cast<long long>(1e6 * (*time_limit + kGrace))));
+}
+
 /// All that can be refused is refused before the long computation.
 void check_outputs(const Arguments& arguments, bool has_sensors) {
   if (!arguments.solve.debug_output.empty()) check_debug_folder(arguments.solve.debug_output);
@@ -62,12 +73,13 @@ void check_outputs(const Arguments& arguments, bool has_sensors) {
                      ": there are no sensors to write; give --sensors POINTS.csv, or \"sensors\" in the scene file.");
 }
 
-void write_outputs(const Arguments& arguments, const Scene& scene, const Solved& solved, const RunReport& report) {
-  write_result(arguments.output, solved.patches, solved.lightmap, solved.solution, daylight_reference(scene.lights),
-               report);
+void write_outputs(const Arguments& arguments, const Scene& scene, const Solved& solved, const RunReport& report,
+                   Outputs& outputs) {
+  write_result(outputs.open(arguments.output), solved.patches, solved.lightmap, solved.solution,
+               daylight_reference(scene.lights), report);
   if (solved.sensor_E.size() > 0)
-    write_sensors(sensors_output(arguments), all_sensor_points(scene.sensors), solved.sensor_E);
-  if (solved.settings.debug) write_debug(arguments.solve.debug_output, solved.debug, solved.patches.origin);
+    write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E);
+  if (solved.settings.debug) write_debug(outputs, arguments.solve.debug_output, solved.debug, solved.patches.origin);
 }
 
 ExitCode solve_command(const Arguments& arguments, Console& console) {
@@ -75,9 +87,12 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   RunReport report = new_report(arguments.input);
 
+  end_without_result_after(arguments.solve.time_limit, console);
   Scene scene = read_scene(arguments.input, arguments.read);
   if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
+  console.has_read(scene.files);
   Settings settings = effective_settings(arguments.common, arguments.solve, scene);
+  end_without_result_after(settings.time_limit, console);
   settings.start = console.start();
   if (settings.debug && settings.solve.method != Method::hierarchical) {
     console.fail("--debug-output shows the hierarchical method only, and the method is " +
@@ -104,14 +119,16 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   Lap writing;
   fill_report(report, scene, solved);
   report.settings = as_figures(solved.settings, solved.patches.channels, arguments.read);
-  write_outputs(arguments, scene, solved, report);
+  Outputs outputs;
+  write_outputs(arguments, scene, solved, report, outputs);
   writing.add_to(write);
 
   const ExitCode code = exit_code(solved);
   say_why(code, solved, console);
   report.seconds.read = read, report.seconds.write = write;
-  finish_report(report, arguments.common, console);
+  finish_report(report, arguments.common, console, outputs);
   say_summary(report, solved, console);
+  console.commit(outputs);
   console.say("  results " + arguments.output + (has_sensors ? ", " + sensors_output(arguments).string() : "") +
               (arguments.common.report.empty() ? "" : ", " + arguments.common.report));
   return code;
@@ -155,9 +172,12 @@ void add_solve_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory solve data/scenes/office.json -o office.vtp --accuracy fine");
   command.callback([arguments, &task] {
     task = [arguments] {
-      std::vector<NamedFile> files = {{"--sensors", arguments->sensors, false},
-                                      {"-o", arguments->output},
-                                      {"--sensors-out", sensors_output(*arguments).string()}};
+      std::vector<NamedFile> files = {{"--sensors", arguments->sensors, false}, {"-o", arguments->output}};
+      if (arguments->sensors_output.empty())
+        files.push_back(
+            {"the sensors' output", sensors_output(*arguments).string(), true, "name another: --sensors-out"});
+      else
+        files.push_back({"--sensors-out", arguments->sensors_output});
       if (!arguments->solve.debug_output.empty())
         for (const auto& file : debug_files(arguments->solve.debug_output))
           files.push_back({"--debug-output", file.string()});

@@ -89,6 +89,16 @@ ModelMaterial to_material(const aiMaterial& from) {
   return to;
 }
 
+void add_textures(const aiMaterial& material, const std::filesystem::path& folder,
+                  std::vector<std::filesystem::path>& files) {
+  for (int type = aiTextureType_NONE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
+    const auto kind = static_cast<aiTextureType>(type);
+    aiString name;
+    for (unsigned k = 0; k < material.GetTextureCount(kind); ++k)
+      if (material.GetTexture(kind, k, &name) == aiReturn_SUCCESS) files.push_back(folder / str(name));
+  }
+}
+
 LocalMesh to_mesh(const aiMesh& from) {
   LocalMesh to;
   to.material = MaterialId(from.mMaterialIndex);
@@ -146,6 +156,9 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   ModelMaterial& none = model.materials.emplace_back();
   none.material.name = kDefaultMaterial;
   none.described = false;
+
+  for (unsigned m = 0; m < scene.mNumMaterials; ++m)
+    add_textures(*scene.mMaterials[m], file.parent_path(), model.files);
 
   struct Open {
     const aiNode* node;

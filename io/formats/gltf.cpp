@@ -114,6 +114,7 @@ class GltfReader {
   Model read() {
     model_.metres_per_unit = 1.0;
     model_.up = Up::y;
+    model_.files = file_.files();
     check_extensions();
     for (std::size_t m = 0; m < file_.list("materials").size(); ++m) {
       model_.materials.push_back(read_material(file_, file_.element("materials", m), m));
@@ -347,7 +348,7 @@ class GltfReader {
                                   ? std::string(file_.view_bytes(whole_number(file_, light, "bufferView", 0, of_light)))
                                   : file_.uri_bytes(uri, of_light);
     try {
-      web = std::make_shared<const PhotometricWeb>(parse_ies(bytes, of_light, folder_, model_.warnings));
+      web = std::make_shared<const PhotometricWeb>(parse_ies(bytes, of_light, folder_, model_.warnings, &model_.files));
     } catch (const InputError& error) {
       file_.refuse(error.what());
     }

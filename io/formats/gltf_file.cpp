@@ -181,6 +181,22 @@ std::string GltfFile::uri_bytes(const std::string& uri, const std::string& where
   }
 }
 
+std::vector<std::filesystem::path> GltfFile::files() const {
+  std::vector<std::filesystem::path> files;
+  std::vector<const Json*> open{&root_};
+  while (!open.empty()) {
+    const Json& at = *open.back();
+    open.pop_back();
+    for (const auto& [key, value] : at.items()) {
+      if (value.is_structured()) open.push_back(&value);
+      if (key != "uri" || !value.is_string()) continue;
+      if (const auto uri = value.get<std::string>(); !uri.starts_with("data:"))
+        files.push_back(file_.parent_path() / percent_decoded(uri));
+    }
+  }
+  return files;
+}
+
 std::string GltfFile::buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk) const {
   const std::string where = text("buffers[", index, "]");
   if (!buffer.is_object()) refuse(where + " must be an object");

@@ -35,6 +35,8 @@ class GltfFile {
   std::vector<std::uint32_t> indices(std::size_t accessor) const;
   /// What a uri stands for: a data URI, or a file beside the model.
   std::string uri_bytes(const std::string& uri, const std::string& where) const;
+  /// The files beside the model that its uris name.
+  std::vector<std::filesystem::path> files() const;
   std::string_view view_bytes(std::size_t buffer_view) const { return view(buffer_view).bytes; }
 
   [[noreturn]] void refuse(const std::string& what) const;

@@ -19,10 +19,11 @@ constexpr std::string_view kSeparators = " \t\v\f,;\x1a";  // 0x1a ended files o
 class IesReader {
  public:
   IesReader(std::string_view bytes, const std::string& name, const std::filesystem::path& folder,
-            std::vector<std::string>& warnings)
+            std::vector<std::string>& warnings, std::vector<std::filesystem::path>* named)
       : words_(bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0), name, kSeparators),
         folder_(folder),
-        warnings_(warnings) {
+        warnings_(warnings),
+        named_(named) {
     web_.name = name;
   }
 
@@ -59,6 +60,7 @@ class IesReader {
     if (kind == "include") return read_tilt_table(words_);
     if (tilt.empty()) words_.refuse("TILT= says nothing; NONE, INCLUDE or the name of a file is known");
     const std::filesystem::path file = folder_ / tilt;
+    if (named_) named_->push_back(file);
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) {
       words_.refuse(text("TILT names the file '", quotable(tilt),
@@ -210,6 +212,7 @@ class IesReader {
   NumberWords words_;
   const std::filesystem::path& folder_;
   std::vector<std::string>& warnings_;
+  std::vector<std::filesystem::path>* named_;
   PhotometricWeb web_;
   bool since_2002_ = false;
   std::size_t vertical_count_ = 0, horizontal_count_ = 0, surplus_line_ = 0;
@@ -219,12 +222,13 @@ class IesReader {
 }  // namespace
 
 PhotometricWeb parse_ies(std::string_view bytes, const std::string& name, const std::filesystem::path& folder,
-                         std::vector<std::string>& warnings) {
-  return IesReader(bytes, name, folder, warnings).read();
+                         std::vector<std::string>& warnings, std::vector<std::filesystem::path>* named) {
+  return IesReader(bytes, name, folder, warnings, named).read();
 }
 
-PhotometricWeb read_ies(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  return parse_ies(read_input_file(file, kMaxBytes), short_name(file), file.parent_path(), warnings);
+PhotometricWeb read_ies(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                        std::vector<std::filesystem::path>* named) {
+  return parse_ies(read_input_file(file, kMaxBytes), short_name(file), file.parent_path(), warnings, named);
 }
 
 }  // namespace clerestory

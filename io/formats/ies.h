@@ -13,9 +13,11 @@ namespace clerestory {
 /// Words are separated by blanks, line ends, commas or semicolons; label lines may be in any encoding.
 ///
 /// folder    where the file of a TILT=file line lies.
+/// named     gets that file, when given.
 /// throws    InputError.
 PhotometricWeb parse_ies(std::string_view bytes, const std::string& name, const std::filesystem::path& folder,
-                         std::vector<std::string>& warnings);
-PhotometricWeb read_ies(const std::filesystem::path& file, std::vector<std::string>& warnings);
+                         std::vector<std::string>& warnings, std::vector<std::filesystem::path>* named = nullptr);
+PhotometricWeb read_ies(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                        std::vector<std::filesystem::path>* named = nullptr);
 
 }  // namespace clerestory

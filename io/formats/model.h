@@ -26,9 +26,10 @@ struct Model {
   std::vector<ModelMaterial> materials;
   std::vector<std::string> surfaces;
   LightSpec lights;
-  std::vector<std::string> warnings;      ///< without the file's name
-  std::optional<double> metres_per_unit;  ///< when the file says its unit
-  std::optional<Up> up;                   ///< when the file says its axes
+  std::vector<std::string> warnings;         ///< without the file's name
+  std::vector<std::filesystem::path> files;  ///< other files that it names, read or not: materials, buffers, textures
+  std::optional<double> metres_per_unit;     ///< when the file says its unit
+  std::optional<Up> up;                      ///< when the file says its axes
 };
 
 inline constexpr std::string_view kDefaultMaterial = "default";  ///< name where the model has none
@@ -48,8 +49,9 @@ Model read_ply(const std::filesystem::path& file);
 Model read_stl(const std::filesystem::path& file);
 Model read_off(const std::filesystem::path& file);
 
-/// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`.
-std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings);
+/// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`, textures to `named`.
+std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                    std::vector<std::filesystem::path>& named);
 
 /// Takes a transparent material (opacity below 1/2) as glass that passes what it does not cover.
 void apply_opacity(Material& material, double opacity);

@@ -25,6 +25,10 @@ class Writer {
     size(s);
     bytes += s;
   }
+  void path(std::filesystem::path& file) {
+    std::string name = file.string();
+    string(name);
+  }
   template <class Container>
   void size(Container& container) {
     std::uint64_t n = container.size();
@@ -49,6 +53,7 @@ class Reader {
     if (n > 0) std::memcpy(static_cast<void*>(values.data()), from.data(), from.size());
   }
   void string(std::string& s) { s = take(count(1)); }
+  void path(std::filesystem::path& file) { file = take(count(1)); }
   template <class Container>
   void size(Container& container) {
     container.resize(count(1));
@@ -106,6 +111,7 @@ void walk(Walker& walker, Model& model) {
   });
   each(walker, model.surfaces, [&](std::string& name) { walker.string(name); });
   each(walker, model.warnings, [&](std::string& warning) { walker.string(warning); });
+  each(walker, model.files, [&](std::filesystem::path& file) { walker.path(file); });
   maybe(walker, model.metres_per_unit);
   maybe(walker, model.up);
 }

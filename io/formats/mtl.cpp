@@ -31,9 +31,22 @@ std::optional<Spectrum> read_colour(std::string_view rest, const std::string& wh
   return colour;
 }
 
+bool names_texture(std::string_view key) {
+  return key.starts_with("map_") || key == "bump" || key == "disp" || key == "decal" || key == "refl" || key == "norm";
+}
+
+/// A texture's name stands behind options, and may have blanks in it: every end of the line that is a file.
+void add_texture(const std::filesystem::path& folder, std::string_view rest,
+                 std::vector<std::filesystem::path>& named) {
+  std::error_code error;
+  for (int words = 0; words < 20 && !(rest = trimmed(rest)).empty(); ++words, next_word(rest))
+    if (std::filesystem::is_regular_file(folder / rest, error)) named.push_back(folder / rest);
+}
+
 }  // namespace
 
-std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                    std::vector<std::filesystem::path>& named) {
   const std::string bytes = read_input_file(file, kMaxBytes);
   const std::string name = short_name(file);
   std::vector<ModelMaterial> materials;
@@ -53,6 +66,7 @@ std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vect
       dissolve.push_back(-1);
       continue;
     }
+    if (names_texture(key)) add_texture(file.parent_path(), rest, named);
     if (materials.empty()) {
       if (key == "Kd" || key == "Ke") throw InputError(text(where, key, " stands before the first newmtl"));
       continue;

@@ -172,7 +172,8 @@ class ObjReader {
       model_.warnings.push_back(text("material file '", quotable(library.string()), "' is missing"));
       return;
     }
-    for (ModelMaterial& material : read_mtl(library, model_.warnings)) {
+    model_.files.push_back(library);
+    for (ModelMaterial& material : read_mtl(library, model_.warnings, model_.files)) {
       described_.try_emplace(material.material.name, material);
     }
   }

@@ -92,9 +92,10 @@ void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vecto
   }
 }
 
-PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                               std::vector<std::filesystem::path>* named) {
   const std::string extension = to_lower(file.extension().string());
-  if (extension == ".ies") return read_ies(file, warnings);
+  if (extension == ".ies") return read_ies(file, warnings, named);
   if (extension == ".ldt") return read_ldt(file, warnings);
   throw InputError(text(short_name(file), ": the extension '", quotable(extension),
                         "' is no photometric file's; .ies (IESNA LM-63) and .ldt (EULUMDAT) are read"));

@@ -11,8 +11,10 @@ namespace clerestory {
 
 /// warnings  what is odd about the file, each with its name; among them the flux that the file declares when it differs
 ///           from the integral of its intensities by more than 5 %.
+/// named     gets other files that it names, when given.
 /// throws    InputError with file, line and reason, also when the extension is unknown.
-PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings);
+PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                               std::vector<std::filesystem::path>* named = nullptr);
 
 /// What all formats share: mirrors the planes of web.symmetry all round, so that `horizontal` of type C goes from 0 to
 /// 360 degrees, and warns about angles and fluxes that are odd.

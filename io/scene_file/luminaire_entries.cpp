@@ -21,8 +21,8 @@ constexpr Range kFlux{.low = 0,
 
 class LuminaireReader {
  public:
-  LuminaireReader(const std::filesystem::path& folder, ChannelCount& channels, std::vector<std::string>& warnings)
-      : folder_(folder), channels_(channels), warnings_(warnings) {}
+  LuminaireReader(const std::filesystem::path& folder, ChannelCount& channels, Scene& scene)
+      : folder_(folder), channels_(channels), scene_(scene) {}
 
   void read(const JsonObject& object, std::size_t number, LightSpec& lights) {
     std::string name = object.word("name").value_or("");
@@ -75,7 +75,7 @@ class LuminaireReader {
     if (!power)
       throw InputError(text(object.place("luminous_flux"), " is missing; a luminaire needs its flux in lumens"));
     if (object.unit_vector("aim") || object.number("rotation")) {
-      warnings_.push_back(
+      scene_.warnings.push_back(
           text(object.where(), ": aim and rotation are not used: a point shines the same in all directions"));
     }
     return *power * read_dimming(object);
@@ -111,32 +111,32 @@ class LuminaireReader {
     auto& web = read_before_[file];
     if (!web) {
       require_file(file, object.place("file"), named);
-      web = std::make_shared<const PhotometricWeb>(read_photometry(file, warnings_));
+      web = std::make_shared<const PhotometricWeb>(read_photometry(file, scene_.warnings, &scene_.files));
     }
     return web;
   }
 
   const std::filesystem::path& folder_;
   ChannelCount& channels_;
-  std::vector<std::string>& warnings_;
+  Scene& scene_;
   std::map<std::filesystem::path, std::shared_ptr<const PhotometricWeb>> read_before_;
 };
 
 }  // namespace
 
 void read_luminaire_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                            ChannelCount& channels, LightSpec& lights, std::vector<std::string>& warnings) {
+                            ChannelCount& channels, Scene& scene) {
   if (!root.has("luminaires")) return;
   const Json& entries = as_array(root.at("luminaires"), root.place("luminaires"), "luminaires");
   if (entries.size() > kMostLuminaires)
     throw InputError(text(root.place("luminaires"), " has more than ", kMostLuminaires, " entries"));
-  LuminaireReader reader(folder, channels, warnings);
+  LuminaireReader reader(folder, channels, scene);
   std::size_t n = 0;
   for (const Json& entry : entries) {
     const JsonObject object(entry, text(file_name, ": luminaires[", n++, "]"),
                             {"name", "type", "file", "position", "aim", "rotation", "luminous_flux", "power", "dimming",
                              "maintenance_factor", "group"});
-    reader.read(object, n, lights);
+    reader.read(object, n, scene.lights);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "io/formats/model.h"
 #include "io/input_file.h"
@@ -73,6 +74,7 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     auto model = read_before.find(model_file);
     if (model == read_before.end()) {
       model = read_before.emplace(model_file, read_model(model_file)).first;
+      scene.files.insert(scene.files.end(), model->second.files.begin(), model->second.files.end());
     } else {
       model->second.warnings.clear();  // said already
     }
@@ -115,6 +117,15 @@ SolverSettings read_settings(const JsonObject& object) {
   return settings;
 }
 
+/// Every file that the scene names. Its models and lamps may name more.
+void add_named_files(const Json& json, const std::filesystem::path& folder, std::set<std::filesystem::path>& files) {
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_structured()) add_named_files(value, folder, files);
+    const bool names_file = key == "file" || key == "weather" || key == "image";
+    if (names_file && value.is_string()) files.insert(folder / value.get<std::string>());
+  }
+}
+
 void report_rules(const std::vector<MaterialRule>& rules, const std::string& file_name, Scene& scene) {
   for (const MaterialRule& rule : rules) {
     std::vector<std::string> used = rule.used;
@@ -137,12 +148,15 @@ Scene read_scene_file(const std::filesystem::path& file) {
       json, name, {"geometry", "materials", "luminaires", "sky", "sun", "location", "time", "sensors", "solver"}, ": ");
   Scene scene;
   scene.file = file.string();
+  std::set<std::filesystem::path> files{file};
+  add_named_files(json, file.parent_path(), files);
+  scene.files.assign(files.begin(), files.end());
   const std::filesystem::path folder = file.parent_path();
   ChannelCount channels;
   std::vector<MaterialRule> rules;
   // What is quick to check comes first; models may take a while.
   if (root.has("materials")) rules = read_material_rules(root.at("materials"), name, channels, scene.warnings);
-  read_luminaire_entries(root, name, folder, channels, scene.lights, scene.warnings);
+  read_luminaire_entries(root, name, folder, channels, scene);
   scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
     scene.settings = read_settings(JsonObject(

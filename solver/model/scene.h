@@ -3,6 +3,7 @@
 // geometry defects here; coordinates are metres, z up, in double.
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,6 +60,7 @@ struct Daylight {
 
 struct Scene {
   std::string file;
+  std::vector<std::filesystem::path> files;  ///< all that it was read from, or that these name
   PolygonSoup polygons;
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< names, by SurfaceId

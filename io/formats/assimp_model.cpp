@@ -197,13 +197,27 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   return model;
 }
 
+/// A DAE or FBX file that begins with the mark of UTF-8, which Assimp does not skip in all of them, without it; empty
+/// for other files.
+std::string without_mark(const std::filesystem::path& file, const std::string& extension) {
+  if (extension == ".ifc") return "";
+  std::ifstream in(file, std::ios::binary);
+  std::string head(4, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (text_bytes(head, short_name(file)).size() == head.size()) return "";
+  return std::string(text_bytes(read_input_file(file, kMaxBytes), short_name(file)));
+}
+
 Model import(const std::filesystem::path& file, const std::string& extension) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // names, not ids
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);       // no made-up nodes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // No post-processing: polygons stay polygons, and node transforms are applied here in double.
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  const std::string bytes = without_mark(file, extension);
+  const aiScene* scene = bytes.empty()
+                             ? importer.ReadFile(file.string(), 0)
+                             : importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str() + 1);
   if (!scene) throw InputError(text(short_name(file), ": cannot be read: ", quotable(importer.GetErrorString())));
   return to_model(*scene, file, extension);
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "io/find_file.h"
 #include "io/formats/number_words.h"
 #include "io/formats/photometry.h"
 #include "io/input_file.h"
@@ -20,9 +21,7 @@ class IesReader {
  public:
   IesReader(std::string_view bytes, const std::string& name, const std::filesystem::path& folder,
             std::vector<std::string>& warnings)
-      : words_(bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0), name, kSeparators),
-        folder_(folder),
-        warnings_(warnings) {
+      : words_(bytes, name, kSeparators), folder_(folder), warnings_(warnings) {
     web_.name = name;
   }
 
@@ -58,14 +57,13 @@ class IesReader {
     if (kind == "none") return;
     if (kind == "include") return read_tilt_table(words_);
     if (tilt.empty()) words_.refuse("TILT= says nothing; NONE, INCLUDE or the name of a file is known");
-    const std::filesystem::path file = folder_ / tilt;
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) {
+    const auto file = find_file(folder_, tilt);
+    if (!file) {
       words_.refuse(text("TILT names the file '", quotable(tilt),
                          "', which is not there; put it beside this file, or write TILT=NONE"));
     }
-    const std::string bytes = read_input_file(file, kMaxBytes);
-    NumberWords words(bytes, short_name(file), kSeparators);
+    const std::string bytes = read_input_file(*file, kMaxBytes);
+    NumberWords words(bytes, short_name(*file), kSeparators);
     read_tilt_table(words);
   }
 

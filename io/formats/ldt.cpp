@@ -18,7 +18,7 @@ constexpr int kMostLampSets = 20;
 class LdtReader {
  public:
   LdtReader(std::string_view bytes, const std::string& name, std::vector<std::string>& warnings)
-      : words_(bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0), name, " \t\v\f;\x1a"), warnings_(warnings) {
+      : words_(bytes, name, " \t\v\f;\x1a"), warnings_(warnings) {
     web_.name = name;
   }
 

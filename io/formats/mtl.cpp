@@ -39,10 +39,8 @@ std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vect
   std::vector<ModelMaterial> materials;
   std::vector<double> opacity, dissolve;  // of each material; dissolve -1: not given
   std::size_t line_number = 0;
-  for (std::size_t begin = 0; begin < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
-    std::string_view rest = trimmed(std::string_view(bytes).substr(begin, end - begin));
-    begin = end + 1;
+  for (std::string_view lines = text_bytes(bytes, name); !lines.empty();) {
+    std::string_view rest = trimmed(next_line(lines));
     const std::string where = text(name, ":", ++line_number, ": ");
     const std::string_view key = next_word(rest);
     if (key.empty() || key[0] == '#') continue;

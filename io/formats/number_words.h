@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 
@@ -15,7 +16,7 @@ class NumberWords {
  public:
   /// separators  what stands between words besides blanks and line ends.
   NumberWords(std::string_view bytes, std::string file, std::string_view separators)
-      : rest_(bytes), file_(std::move(file)), separators_(separators) {}
+      : rest_(text_bytes(bytes, file)), file_(std::move(file)), separators_(separators) {}
 
   [[noreturn]] void refuse(const std::string& what) const { throw InputError(text(file_, ":", line_, ": ", what)); }
 
@@ -23,10 +24,7 @@ class NumberWords {
   bool line(std::string_view& out) {
     if (rest_.empty()) return false;
     ++line_;
-    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-    out = rest_.substr(0, end);
-    const bool crlf = rest_.substr(end).starts_with("\r\n");
-    rest_.remove_prefix(std::min(end + (crlf ? 2 : 1), rest_.size()));
+    out = next_line(rest_);
     words_ = {};
     return true;
   }

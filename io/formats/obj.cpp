@@ -172,7 +172,7 @@ class ObjReader {
   }
 
   void read_library(const std::filesystem::path& library) {
-    for (ModelMaterial& material : read_mtl(library, model_.warnings)) {
+    for (ModelMaterial& material : read_mtl(library, model_.textures, model_.warnings)) {
       described_.try_emplace(material.material.name, material);
     }
   }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "io/formats/model.h"
+#include "io/formats/texture_means.h"
 #include "io/input_file.h"
 #include "io/memory_size.h"
 #include "io/parse_json.h"
@@ -73,6 +74,10 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     auto model = read_before.find(model_file);
     if (model == read_before.end()) {
       model = read_before.emplace(model_file, read_model(model_file)).first;
+      take_texture_means(model->second, [&](const std::string& material) {
+        return std::ranges::any_of(
+            rules, [&](const MaterialRule& rule) { return matches(rule.pattern, clean_text(material)); });
+      });
     } else {
       model->second.warnings.clear();  // said already
     }

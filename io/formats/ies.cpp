@@ -30,7 +30,10 @@ class IesReader {
     read_luminaire();
     read_angles();
     read_candelas();
-    refuse_surplus();
+    words_.end(warnings_, [&](std::size_t more) {
+      words_.refuse(text(more, more == 1 ? " more number than " : " more numbers than ", vertical_count_, " x ",
+                         horizontal_count_, " candelas; the counts of angles do not fit the data"));
+    });
     if (web_.type == WebType::C) fit_circle();
     const double lamps = web_.lamp_flux * std::max(1.0, scale_);
     complete_web(web_, lamps, true, warnings_);
@@ -162,26 +165,18 @@ class IesReader {
   }
 
   void read_candelas() {
-    for (const double h : web_.horizontal) {
-      for (std::size_t v = 0; v < vertical_count_; ++v) {
-        const auto what = [&] { return text("candela at V = ", web_.vertical[v], ", H = ", h); };
-        const double I = words_.number(what);
-        if (I < 0) words_.refuse(text(what(), " = ", I, " is negative"));
-        web_.candela.push_back(static_cast<float>(I * scale_));
-      }
+    std::vector<std::size_t> line;
+    const auto what = [&](std::size_t i) {
+      return text("candela at V = ", web_.vertical[i % vertical_count_],
+                  ", H = ", web_.horizontal[i / vertical_count_]);
+    };
+    for (std::size_t i = 0; i < vertical_count_ * horizontal_count_; ++i) {
+      web_.candela.push_back(static_cast<float>(words_.number([&] { return what(i); }) * scale_));
+      line.push_back(words_.line_number());
     }
-  }
-
-  void refuse_surplus() {
-    std::size_t more = 0;
-    for (std::string_view w = words_.word(); !w.empty(); w = words_.word()) {
-      if (!to_number(w)) continue;
-      if (++more == 1) surplus_line_ = words_.line_number();
-    }
-    if (more > 0) {
-      throw InputError(text(web_.name, ":", surplus_line_, ": ", more, " more numbers than ", vertical_count_, " x ",
-                            horizontal_count_, " candelas; the counts of angles do not fit the data"));
-    }
+    if (const std::size_t i = settle_negative(web_, warnings_); i < web_.candela.size())
+      throw InputError(text(web_.name, ":", line[i], ": ", what(i), " = ",
+                            std::round(web_.candela[i] / scale_ * 1e6) / 1e6, " is negative"));
   }
 
   /// Planes that stop short of 360 degrees, 0 to 345: the first one closes the circle.
@@ -210,7 +205,7 @@ class IesReader {
   std::vector<std::string>& warnings_;
   PhotometricWeb web_;
   bool since_2002_ = false;
-  std::size_t vertical_count_ = 0, horizontal_count_ = 0, surplus_line_ = 0;
+  std::size_t vertical_count_ = 0, horizontal_count_ = 0;
   double scale_ = 1;  ///< multiplier and factors of the ballast
 };
 

@@ -46,4 +46,16 @@ std::string read_input_file(const std::filesystem::path& file, std::uintmax_t ma
   return bytes;
 }
 
+std::string_view text_bytes(std::string_view bytes, const std::string& name) {
+  const auto is_ascii_beside_zero = [&](std::size_t ascii, std::size_t zero) {
+    const char c = bytes[ascii];
+    return bytes[zero] == 0 && ((c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t');
+  };
+  const bool has_mark = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+  if (has_mark || (bytes.size() >= 4 && ((is_ascii_beside_zero(0, 1) && is_ascii_beside_zero(2, 3)) ||
+                                         (is_ascii_beside_zero(1, 0) && is_ascii_beside_zero(3, 2)))))
+    throw InputError(text(name, ": is UTF-16 text; save it as UTF-8"));
+  return bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0);
+}
+
 }  // namespace clerestory

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace clerestory {
 
@@ -21,5 +22,10 @@ void check_input_file(const std::filesystem::path& file, std::uintmax_t max_byte
 
 /// The whole file. Throws as check_input_file does.
 std::string read_input_file(const std::filesystem::path& file, std::uintmax_t max_bytes);
+
+/// The bytes of a text without the mark that some editors put before UTF-8.
+///
+/// throws  InputError when they are UTF-16, with a mark of its own or without.
+std::string_view text_bytes(std::string_view bytes, const std::string& name);
 
 }  // namespace clerestory

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 
@@ -26,7 +27,7 @@ std::string line_and_column(std::string_view bytes, std::size_t offset) {
 template <class AnyJson>
 AnyJson parse_json(std::string_view bytes, const std::string& file_name, const JsonLimits& limits) {
   using Event = typename AnyJson::parse_event_t;
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  bytes = text_bytes(bytes, file_name);
   std::vector<std::set<std::string>> keys;  // of each object that is open
   const auto watch = [&](int depth, Event event, AnyJson& parsed) {
     if (depth > limits.deepest)

@@ -1,6 +1,7 @@
 #include "io/read_scene.h"
 
 #include "io/formats/model.h"
+#include "io/formats/texture_means.h"
 #include "io/input_file.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/scene_file/place_model.h"
@@ -29,9 +30,10 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
   Scene scene;
   scene.file = file.string();
   if (options.sky) scene.lights.sky = sky_of_option(*options.sky);
-  const Model model = read_model(file);
+  Model model = read_model(file);
   scene.files = model.files;
   scene.files.push_back(file);
+  take_texture_means(model, [](const std::string&) { return false; });
   place_model(scene, model, file, placement, [](Material&) { return false; });
   return scene;
 }

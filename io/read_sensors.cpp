@@ -16,46 +16,81 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 2ull << 30;
 constexpr std::array<std::string_view, 6> kColumns = {"x", "y", "z", "nx", "ny", "nz"};
-using Order = std::array<std::size_t, 6>;  ///< position in a row of each of kColumns
+using Order = std::array<std::size_t, kColumns.size()>;  ///< position in a row of each of kColumns
 
-/// Parts of a row between commas or semicolons.
-std::vector<std::string_view> cells_of(std::string_view row) {
-  std::vector<std::string_view> cells;
+constexpr std::string_view kAnySeparator = ",;\t ", kNoComma = ";\t ";
+
+using Cells = std::vector<std::string_view>;
+
+/// Parts of a row between separators; blanks and tabs beside one another, or beside another separator, count as one.
+Cells cells_of(std::string_view row, std::string_view separators) {
+  Cells cells;
+  const auto skip_blanks = [&] { row.remove_prefix(std::min(row.find_first_not_of(" \t"), row.size())); };
   while (cells.size() <= 64) {  // no sensor file has more columns; a row of a million commas is refused all the same
-    const std::size_t end = row.find_first_of(",;");
+    skip_blanks();
+    const std::size_t closing = row.starts_with('"') ? row.find('"', 1) : row.npos;
+    const std::size_t end = row.find_first_of(separators, closing == row.npos ? 0 : closing);
     std::string_view cell = trimmed(row.substr(0, end));
     if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
     cells.push_back(cell);
     if (end == row.npos) break;
-    row.remove_prefix(end + 1);
+    row.remove_prefix(end);
+    skip_blanks();
+    if (row.starts_with(',') || row.starts_with(';')) row.remove_prefix(1);
   }
   return cells;
 }
 
+/// With a point or a decimal comma.
+std::optional<double> number_of(std::string_view cell) {
+  const std::size_t comma = cell.find(',');
+  if (comma == cell.npos) return to_number(cell);
+  std::string with_point(cell);
+  with_point[comma] = '.';
+  return to_number(with_point);
+}
+
+bool is_number(std::string_view cell) { return number_of(cell).has_value(); }
+
 /// Cells of a row without the empty ones at its end, which spreadsheets leave.
-std::size_t value_count(const std::vector<std::string_view>& cells) {
+std::size_t value_count(const Cells& cells) {
   std::size_t n = cells.size();
   while (n > 0 && cells[n - 1].empty()) --n;
   return n;
 }
 
-/// Order of the columns when the row is a header, that is, has no number in it.
-std::optional<Order> header_order(const std::vector<std::string_view>& cells, const std::string& where) {
-  if (std::any_of(cells.begin(), cells.end(), [](std::string_view cell) { return to_number(cell).has_value(); }))
-    return {};
+/// As a row of `columns` values, by what separates the header's names, else by anything, else with decimal commas.
+Cells row_of(std::string_view row, std::string_view separators, std::size_t columns) {
+  const Cells first = cells_of(row, separators);
+  if (value_count(first) == columns) return first;
+  for (const std::string_view others : {kAnySeparator, kNoComma})
+    if (const Cells cells = cells_of(row, others); cells.size() == columns && std::ranges::all_of(cells, is_number))
+      return cells;
+  return first;
+}
+
+/// What separates the names of a header: blanks only where nothing else does, as a name may hold them.
+std::string separators_of(std::string_view header) {
+  std::string used;
+  for (const char mark : {',', ';', '\t'})
+    if (header.find(mark) != header.npos) used += mark;
+  return used.empty() ? " " : used;
+}
+
+/// Position in a row of each of kColumns.
+Order header_order(const Cells& names, const std::string& where) {
   Order order{};
-  for (std::size_t k = 0; k < 6; ++k) {
+  for (std::size_t k = 0; k < kColumns.size(); ++k) {
     const auto found =
-        std::find_if(cells.begin(), cells.end(), [&](std::string_view cell) { return to_lower(cell) == kColumns[k]; });
-    if (found == cells.end()) {
+        std::ranges::find_if(names, [&](std::string_view name) { return to_lower(name) == kColumns[k]; });
+    if (found == names.end())
       throw InputError(text(where, "no column '", kColumns[k], "' in the header; expected x,y,z,nx,ny,nz"));
-    }
-    order[k] = static_cast<std::size_t>(found - cells.begin());
+    order[k] = static_cast<std::size_t>(found - names.begin());
   }
   return order;
 }
 
-SensorPoint point_of(const std::vector<std::string_view>& cells, const Order& order, const std::string& where) {
+SensorPoint point_of(const Cells& cells, const Order& order, const std::string& where) {
   std::array<double, 6> value{};
   for (std::size_t k = 0; k < 6; ++k) {
     if (order[k] >= cells.size()) {
@@ -63,7 +98,7 @@ SensorPoint point_of(const std::vector<std::string_view>& cells, const Order& or
           text(where, cells.size(), cells.size() == 1 ? " value" : " values", "; expected x,y,z,nx,ny,nz"));
     }
     const std::string_view cell = cells[order[k]];
-    const std::optional<double> number = to_number(cell);
+    const std::optional<double> number = number_of(cell);
     if (!number) throw InputError(text(where, kColumns[k], " = '", quotable(cell), "' is not a number"));
     if (!(std::abs(*number) <= 1e12))
       throw InputError(text(where, kColumns[k], " = ", cell, " is outside [-1e12, 1e12]"));
@@ -81,27 +116,27 @@ SensorSet read_sensors(const std::filesystem::path& file) {
   const std::string name = short_name(file);
   SensorSet sensors{file.stem().string(), {}};
   std::optional<Order> order;
-  std::size_t columns = 6;  // a header may name more, of which we know nothing
+  std::string separators(kAnySeparator);
+  std::size_t columns = kColumns.size();  // a header may name more, of which we know nothing
   std::size_t row_number = 0;
-  for (std::size_t begin = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; begin < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
-    const std::string_view row = trimmed(std::string_view(bytes).substr(begin, end - begin));
-    begin = end + 1;
+  for (std::string_view rest = text_bytes(bytes, name); !rest.empty();) {
+    const std::string_view row = trimmed(next_line(rest));
     ++row_number;
     if (row.empty() || row.front() == '#') continue;
     const std::string where = text(name, ": row ", row_number, ": ");
-    const std::vector<std::string_view> cells = cells_of(row);
     if (!order) {
-      order = header_order(cells, where);
-      if (order) {
-        columns = cells.size();
+      const Cells names = cells_of(row, separators_of(row));
+      if (!is_number(cells_of(row, kAnySeparator)[0]) && std::ranges::none_of(names, is_number)) {
+        order = header_order(names, where);
+        separators = separators_of(row), columns = names.size();
         continue;
       }
       order = Order{0, 1, 2, 3, 4, 5};
     }
+    const Cells cells = row_of(row, separators, columns);
     if (value_count(cells) > columns)
       throw InputError(text(where, value_count(cells), " values; expected ",
-                            columns == 6 ? "x,y,z,nx,ny,nz" : text("the ", columns, " of the header")));
+                            columns == kColumns.size() ? "x,y,z,nx,ny,nz" : text("the ", columns, " of the header")));
     sensors.points.push_back(point_of(cells, *order, where));
     if (sensors.points.size() > kMaxSensors) throw InputError(text(name, ": has more than ", kMaxSensors, " rows"));
   }

@@ -1,5 +1,6 @@
 #include "io/text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <limits>
@@ -30,6 +31,15 @@ std::string_view next_word(std::string_view& rest) {
   const std::string_view word = rest.substr(0, n);
   rest.remove_prefix(n);
   return word;
+}
+
+std::string_view next_line(std::string_view& rest) {
+  std::size_t n = 0;
+  while (n < rest.size() && rest[n] != '\n' && rest[n] != '\r') ++n;
+  const std::string_view line = rest.substr(0, n);
+  const bool crlf = rest.substr(n).starts_with("\r\n");
+  rest.remove_prefix(std::min(n + (crlf ? 2 : 1), rest.size()));
+  return line;
 }
 
 std::optional<double> to_number(std::string_view s) {

@@ -22,6 +22,8 @@ std::string to_lower(std::string_view s);
 std::string_view trimmed(std::string_view s);
 /// Next word of `rest`, which is moved behind it; empty at the end. Blanks and tabs separate.
 std::string_view next_word(std::string_view& rest);
+/// Cuts the next line off `rest`, which must not be empty. Lines end in LF, CR LF or CR, which are left out.
+std::string_view next_line(std::string_view& rest);
 /// All of s as a number ("1e3", "-.5", "nan"); nothing when it is not one.
 std::optional<double> to_number(std::string_view s);
 /// s with control characters and what is not UTF-8 replaced by '?': fit for messages, XML and JSON.

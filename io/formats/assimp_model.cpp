@@ -10,6 +10,7 @@
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
+#include "io/find_file.h"
 #include "io/formats/add_mesh.h"
 #include "io/formats/ifc_unit.h"
 #include "io/formats/model_bytes.h"
@@ -66,6 +67,24 @@ bool is_made_up(const std::string& name) {
 double colour_part(float x) { return std::isfinite(x) && x > 0 ? std::min(double{x}, kLargestCoordinate) : 0.0; }
 Spectrum to_spectrum(const aiColor3D& c) { return {colour_part(c.r), colour_part(c.g), colour_part(c.b)}; }
 
+/// The image that a material shows in the place of its diffuse colour; nothing where it shows none.
+std::optional<ModelTexture> texture_of(const aiMaterial& from, const aiScene& scene,
+                                       const std::filesystem::path& folder) {
+  aiString path;
+  if (from.GetTexture(aiTextureType_DIFFUSE, 0, &path) != aiReturn_SUCCESS &&
+      from.GetTexture(aiTextureType_BASE_COLOR, 0, &path) != aiReturn_SUCCESS)
+    return std::nullopt;
+  const std::string named = str(path);
+  ModelTexture texture{named.substr(named.find_last_of("/\\") + 1), {}, {}};
+  if (const aiTexture* inside = scene.GetEmbeddedTexture(path.C_Str())) {
+    // Height 0: the bytes of an image file; others are pixels without a format, which no file that we know has.
+    if (inside->mHeight == 0) texture.bytes.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
+  } else {
+    texture.file = find_file(folder, named).value_or("");
+  }
+  return texture;
+}
+
 ModelMaterial to_material(const aiMaterial& from) {
   ModelMaterial to;
   aiString name;
@@ -81,7 +100,6 @@ ModelMaterial to_material(const aiMaterial& from) {
     to.material.exitance = std::numbers::pi * to_spectrum(colour);
     to.unitless_glow = !to.material.exitance.is_black();
   }
-  to.textured = from.GetTextureCount(aiTextureType_DIFFUSE) + from.GetTextureCount(aiTextureType_BASE_COLOR) > 0;
   float opacity = 1;
   if (from.Get(AI_MATKEY_OPACITY, opacity) == aiReturn_SUCCESS && std::isfinite(opacity)) {
     apply_opacity(to.material, opacity);
@@ -151,6 +169,13 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   set_frame(model, scene, file, extension);
   for (unsigned m = 0; m < scene.mNumMaterials; ++m) {
     model.materials.push_back(to_material(*scene.mMaterials[m]));
+    if (auto texture = texture_of(*scene.mMaterials[m], scene, file.parent_path())) {
+      ModelMaterial& material = model.materials.back();
+      material.texture = model.textures.size();
+      material.material.reflectance = Spectrum(1.0);
+      material.described = true;
+      model.textures.push_back(std::move(*texture));
+    }
   }
   const MaterialId no_material(model.materials.size());
   ModelMaterial& none = model.materials.emplace_back();
@@ -210,13 +235,27 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   return model;
 }
 
+/// A DAE or FBX file that begins with the mark of UTF-8, which Assimp does not skip in all of them, without it; empty
+/// for other files.
+std::string without_mark(const std::filesystem::path& file, const std::string& extension) {
+  if (extension == ".ifc") return "";
+  std::ifstream in(file, std::ios::binary);
+  std::string head(4, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (text_bytes(head, short_name(file)).size() == head.size()) return "";
+  return std::string(text_bytes(read_input_file(file, kMaxBytes), short_name(file)));
+}
+
 Model import(const std::filesystem::path& file, const std::string& extension) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // names, not ids
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);       // no made-up nodes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // No post-processing: polygons stay polygons, and node transforms are applied here in double.
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  const std::string bytes = without_mark(file, extension);
+  const aiScene* scene = bytes.empty()
+                             ? importer.ReadFile(file.string(), 0)
+                             : importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str() + 1);
   if (!scene) throw InputError(text(short_name(file), ": cannot be read: ", quotable(importer.GetErrorString())));
   return to_model(*scene, file, extension);
 }

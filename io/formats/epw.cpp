@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "io/find_file.h"
 #include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -16,15 +17,25 @@ constexpr std::size_t kHeaderLines = 8, kMostHours = 200'000;
 
 using Cells = std::vector<std::string_view>;
 
-Cells cells_of(std::string_view row) {
+/// Separated as the file is; a separator between quotation marks is part of its cell.
+Cells cells_of(std::string_view row, char separator) {
   Cells cells;
   while (cells.size() <= 1000) {
-    const std::size_t end = row.find(',');
-    cells.push_back(trimmed(row.substr(0, end)));
+    row.remove_prefix(std::min(row.find_first_not_of(" \t"), row.size()));
+    const std::size_t closing = row.starts_with('"') ? row.find('"', 1) : row.npos;
+    const std::size_t end = row.find(separator, closing == row.npos ? 0 : closing);
+    cells.push_back(unquoted(row.substr(0, end)));
     if (end == row.npos) break;
     row.remove_prefix(end + 1);
   }
   return cells;
+}
+
+/// With a decimal comma where commas do not separate.
+std::optional<double> number_of(std::string_view cell) {
+  std::string with_point(cell);
+  std::replace(with_point.begin(), with_point.end(), ',', '.');
+  return to_number(with_point);
 }
 
 /// One line, with what messages about it begin with.
@@ -32,10 +43,11 @@ struct Line {
   std::string where;
   Cells cells;
 
+  std::string_view cell(std::size_t column) const { return column < cells.size() ? cells[column] : std::string_view{}; }
   double number(std::size_t column, std::string_view name, double low, double high) const {
     if (column >= cells.size())
       throw InputError(text(where, name, " is missing: the line has ", cells.size(), " values"));
-    const std::optional<double> x = to_number(cells[column]);
+    const std::optional<double> x = number_of(cells[column]);
     if (!x) throw InputError(text(where, name, " = '", quotable(cells[column]), "' is not a number"));
     if (!(*x >= low && *x <= high))
       throw InputError(text(where, name, " = ", *x, " is outside [", low, ", ", high, "]"));
@@ -46,85 +58,152 @@ struct Line {
     if (x != std::floor(x)) throw InputError(text(where, name, " = ", x, " is not a whole number"));
     return static_cast<int>(x);
   }
-  /// A quantity; nothing from `missing` on, which marks that it was not measured.
-  std::optional<double> measured(std::size_t column, std::string_view name, double low, double missing) const {
-    const double x = number(column, name, low, 1e12);
-    return x < missing ? std::optional(x) : std::nullopt;
+  /// A number of [low, missing), from where on it marks that nothing was measured; what is no number is nothing too.
+  std::optional<double> measured(std::size_t column, double low, double missing) const {
+    const std::optional<double> x = number_of(cell(column));
+    return x && *x >= low && *x < missing ? x : std::nullopt;
   }
 };
 
-/// "3/21", with blanks and a year perhaps, as days of a calendar.
-std::chrono::sys_days period_day(std::string_view date, const Line& line) {
-  using namespace std::chrono;
-  int part[3] = {0, 0, 2001};  // without a year, of one without a leap day
-  std::size_t n = 0;
-  for (std::string_view rest = date; n < 3; ++n) {
-    const std::size_t slash = rest.find('/');
-    const std::optional<double> x = to_number(trimmed(rest.substr(0, slash)));
-    if (!x || !(*x >= 1 && *x <= 9999) || *x != std::floor(*x)) break;
-    part[n] = static_cast<int>(*x);
-    if (slash == rest.npos) {
-      ++n;
-      break;
-    }
-    rest.remove_prefix(slash + 1);
-  }
-  const year_month_day parsed(year(part[2]), month(static_cast<unsigned>(part[0])),
-                              day(static_cast<unsigned>(part[1])));
-  if (n < 2 || !parsed.ok())
-    throw InputError(text(line.where, "'", quotable(date), "' is not a date; expected month/day"));
-  return parsed;
+/// Radiation [W/m2], nothing where it is missing; what else is wrong with it goes to `flaw`.
+std::optional<double> radiation(const Line& line, std::size_t column, std::string_view name, std::string& flaw) {
+  constexpr double kOffset = -50, kMissing = 9999, kMost = 1500;  // the sun outside the air gives 1367
+  if (line.cell(column).empty()) return std::nullopt;
+  const std::optional<double> x = number_of(line.cell(column));
+  if (x && (*x <= kOffset || *x >= kMissing)) return std::nullopt;
+  if (x && *x <= kMost) return std::max(*x, 0.0);
+  flaw = x && !std::isnan(*x) ? text(name, " = ", *x, " is outside [0, ", kMost, "] W/m2")
+                              : text(name, " = '", quotable(line.cell(column)), "' is not a number");
+  return std::nullopt;
 }
 
-/// Hours that the last line of the header says.
-std::size_t promised_hours(const Line& line) {
+/// Illuminance [lx]. Besides 999999 and its like, the fillers of other columns are found here.
+std::optional<double> illuminance(const Line& line, std::size_t column) {
+  const std::optional<double> lux = line.measured(column, 0, 999'900);
+  return lux == 9999 || lux == 99'999 ? std::nullopt : lux;
+}
+
+/// "3/21", "3/21/2005" or "2005/3/21", with blanks and - for / perhaps, as days of a calendar; nothing for other words.
+std::optional<std::chrono::sys_days> period_day(std::string_view date) {
+  using namespace std::chrono;
+  std::vector<int> part;
+  while (part.size() <= 3) {
+    const std::size_t end = date.find_first_of("/-");
+    const std::optional<double> x = to_number(trimmed(date.substr(0, end)));
+    if (!x || !(*x >= 1 && *x <= 9999) || *x != std::floor(*x)) return std::nullopt;
+    part.push_back(static_cast<int>(*x));
+    if (end == date.npos) break;
+    date.remove_prefix(end + 1);
+  }
+  if (part.size() == 2) part.push_back(2001);  // without a year, of one without a leap day
+  if (part.size() != 3) return std::nullopt;
+  if (part[0] > 31) part = {part[1], part[2], part[0]};
+  const year_month_day parsed(year(part[2]), month(static_cast<unsigned>(part[0])),
+                              day(static_cast<unsigned>(part[1])));
+  return parsed.ok() ? std::optional<sys_days>(parsed) : std::nullopt;
+}
+
+/// Hours that the last line of the header promises at least: leap days may be there or not. 0: it does not say.
+std::size_t promised_hours(const Line& line, std::vector<std::string>& warnings) {
+  using namespace std::chrono;
   const int periods = line.whole(1, "the number of periods", 1, 100);
   const int per_hour = line.whole(2, "the number of records an hour", 1, 60);
   if (per_hour != 1) throw InputError(text(line.where, per_hour, " records an hour; only hourly files are read"));
-  long days = 0;
+  long total = 0;
   for (int k = 0; k < periods; ++k) {
     const auto column = static_cast<std::size_t>(5 + 4 * k);
-    if (column + 1 >= line.cells.size())
-      throw InputError(text(line.where, "has ", line.cells.size(), " values; expected first and last day of ", periods,
-                            periods == 1 ? " period" : " periods"));
-    const long length = (period_day(line.cells[column + 1], line) - period_day(line.cells[column], line)).count() + 1;
-    days += length > 0 ? length : length + 365;  // over the end of the year
+    const auto first = period_day(line.cell(column)), last = period_day(line.cell(column + 1));
+    if (!first || !last) {
+      warnings.push_back(text(line.where, "'", quotable(line.cell(first ? column + 1 : column)),
+                              "' is not a date, month/day; whether the file is complete is not known"));
+      return 0;
+    }
+    const long length = (*last - *first).count() + 1;
+    total += length > 0 ? length : length + 365;  // over the end of the year
+    for (year y = year_month_day(*first).year(); y <= year_month_day(*last).year(); ++y)
+      if (const sys_days leap_day = y / February / 29; y.is_leap() && *first <= leap_day && leap_day <= *last) --total;
   }
-  if (days < 0 || days > 10'000) throw InputError(text(line.where, "periods of ", days, " days"));
-  return static_cast<std::size_t>(days) * 24;
+  if (total > 100'000) throw InputError(text(line.where, "periods of ", total, " days"));
+  return total > 0 ? static_cast<std::size_t>(total) * 24 : 0;
 }
 
 WeatherHour hour_of(const Line& line) {
-  constexpr std::size_t kLeast = 29;  // files of early versions have fewer than the 35 of today, but all these
-  if (line.cells.size() < kLeast)
-    throw InputError(text(line.where, "has ", line.cells.size(), line.cells.size() == 1 ? " value" : " values",
-                          "; an hour has 35. The file is damaged or cut short"));
   WeatherHour h;
-  h.year = line.whole(0, "the year", 1, 9999);
-  h.month = line.whole(1, "the month", 1, 12);
-  h.day = line.whole(2, "the day", 1, 31);
-  h.hour = line.whole(3, "the hour", 1, 24);
-  h.dew_point_c = line.measured(7, "the dew point", -150, 99.9);
-  h.direct_normal = line.measured(14, "the direct normal radiation", 0, 9999);
-  h.diffuse_horizontal = line.measured(15, "the diffuse horizontal radiation", 0, 9999);
-  h.direct_normal_lux = line.measured(17, "the direct normal illuminance", 0, 999'900);
-  h.diffuse_horizontal_lux = line.measured(18, "the diffuse horizontal illuminance", 0, 999'900);
-  if (const auto mm = line.measured(28, "the precipitable water", 0, 999)) h.precipitable_water_cm = *mm / 10;
+  try {
+    h.day = line.whole(2, "the day", 1, 31);
+    h.hour = line.whole(3, "the hour", 0, 24);
+    h.month = line.whole(1, "the month", 1, 12);
+  } catch (const InputError& error) {
+    h.flaw = std::string_view(error.what()).substr(line.where.size());
+    return h;
+  }
+  h.year = static_cast<int>(line.measured(0, 1, 10'000).value_or(h.year));
+  constexpr std::size_t kLeast = 16;  // up to the radiation
+  if (line.cells.size() < kLeast)
+    h.flaw = text("has ", line.cells.size(), line.cells.size() == 1 ? " value" : " values",
+                  "; an hour has 35. The file is damaged or cut short");
+  h.dew_point_c = line.measured(7, -90, 99.9);
+  h.direct_normal = radiation(line, 14, "the direct normal radiation", h.flaw);
+  h.diffuse_horizontal = radiation(line, 15, "the diffuse horizontal radiation", h.flaw);
+  h.direct_normal_lux = illuminance(line, 17);
+  h.diffuse_horizontal_lux = illuminance(line, 18);
+  if (const auto mm = line.measured(28, 0, 999)) h.precipitable_water_cm = *mm / 10;
   return h;
+}
+
+/// Hours that are counted from 0: of a file that begins with one, by their beginning; else 0 is 24 of the day before.
+void settle_hour_0(Weather& weather) {
+  std::vector<WeatherHour>& hours = weather.hours;
+  const auto is_0 = [](const WeatherHour& h) { return h.month > 0 && h.hour == 0; };
+  if (std::ranges::none_of(hours, is_0)) return;
+  const bool by_beginning = is_0(hours.front());
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    WeatherHour& h = hours[i];
+    if (h.month == 0) continue;
+    if (by_beginning) {
+      h.hour = std::min(h.hour + 1, 24);
+    } else if (h.hour == 0) {
+      h.hour = 24;
+      if (hours[i - 1].month > 0) h.year = hours[i - 1].year, h.month = hours[i - 1].month, h.day = hours[i - 1].day;
+    }
+  }
+  weather.warnings.push_back(text(weather.file, ": counts hours from 0; hour 0 is taken as ",
+                                  by_beginning ? "the one from 0:00 to 1:00" : "the last one of the day before"));
+}
+
+/// LOCATION,city,state,country,source,number,latitude,longitude,time zone,elevation
+void read_location(const Line& line, Weather& weather) {
+  if (to_lower(line.cells[0]) != "location")
+    throw InputError(text(line.where, "begins with '", quotable(line.cells[0]),
+                          "' and not with LOCATION; it is no EPW weather file"));
+  std::size_t n = line.cells.size();
+  while (n > 0 && line.cells[n - 1].empty()) --n;
+  // A comma in the name of the city, without quotation marks, moves what follows.
+  const std::size_t first = n > 10 && number_of(line.cells[n - 4]) ? n - 4 : 6;
+  weather.city = clean_text(line.cell(1));
+  weather.place = {line.number(first, "the latitude", -90, 90), line.number(first + 1, "the longitude", -180, 180),
+                   line.number(first + 2, "the time zone", -14, 14)};
 }
 
 }  // namespace
 
-const WeatherHour& Weather::at(int month, int day, int hour) const {
-  const auto found = std::find_if(hours.begin(), hours.end(), [&](const WeatherHour& h) {
-    return h.month == month && h.day == day && h.hour == hour;
-  });
-  if (found == hours.end()) {
-    const WeatherHour &first = hours.front(), &last = hours.back();
-    throw InputError(text(file, ": has no hour ", hour, " of ", month, "/", day, " (month/day); it goes from ",
-                          first.month, "/", first.day, " to ", last.month, "/", last.day));
+const WeatherHour& Weather::at(int month, int day, int hour, std::optional<int> year) const {
+  const WeatherHour* found = nullptr;
+  for (const WeatherHour& h : hours) {
+    if (h.month != month || h.day != day || h.hour != hour) continue;
+    if (!found || h.year == year) found = &h;
+    if (!year || h.year == year) break;
   }
-  return *found;
+  if (found) return *found;
+  const auto has_date = [](const WeatherHour& h) { return h.month > 0; };
+  const auto first = std::ranges::find_if(hours, has_date);
+  const auto last = std::find_if(hours.rbegin(), hours.rend(), has_date);
+  const auto bad = std::ranges::find_if_not(hours, has_date);
+  throw InputError(text(file, ": has no hour ", hour, " of ", month, "/", day, " (month/day); ",
+                        first == hours.end()
+                            ? "no line has a date"
+                            : text("it goes from ", first->month, "/", first->day, " to ", last->month, "/", last->day),
+                        bad == hours.end() ? "" : text(". In line ", bad->line, " ", bad->flaw)));
 }
 
 Weather read_epw(const std::filesystem::path& file) {
@@ -132,26 +211,21 @@ Weather read_epw(const std::filesystem::path& file) {
   Weather weather;
   weather.file = short_name(file);
   std::size_t number = 0, promised = 0;
-  for (std::size_t begin = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; begin < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
-    const std::string_view row = trimmed(std::string_view(bytes).substr(begin, end - begin));
-    begin = end + 1;
+  char separator = ',';
+  for (std::string_view rest = text_bytes(bytes, weather.file); !rest.empty();) {
+    const std::string_view row = trimmed(next_line(rest));
     ++number;
+    if (number == 1 && row.find(';') < row.find(',')) separator = ';';
     if (number > kHeaderLines && row.empty()) continue;
     const bool used = number == 1 || number >= kHeaderLines;
-    const Line line{text(weather.file, ":", number, ": "), used ? cells_of(row) : Cells{}};
+    const Line line{text(weather.file, ":", number, ": "), used ? cells_of(row, separator) : Cells{}};
     if (number == 1) {
-      if (to_lower(line.cells[0]) != "location")
-        throw InputError(text(line.where, "begins with '", quotable(line.cells[0]),
-                              "' and not with LOCATION; it is no ", "EPW weather file"));
-      weather.city = line.cells.size() > 1 ? clean_text(line.cells[1]) : "";
-      weather.place = {line.number(6, "the latitude", -90, 90), line.number(7, "the longitude", -180, 180),
-                       line.number(8, "the time zone", -14, 14)};
+      read_location(line, weather);
     } else if (number == kHeaderLines) {
       if (to_lower(line.cells[0]) != "data periods")
         throw InputError(text(line.where, "begins with '", quotable(line.cells[0]), "' and not with DATA PERIODS; the ",
                               "header has 8 lines"));
-      promised = promised_hours(line);
+      promised = promised_hours(line, weather.warnings);
     } else if (number > kHeaderLines) {
       weather.hours.push_back(hour_of(line));
       weather.hours.back().line = static_cast<int>(number);
@@ -162,12 +236,11 @@ Weather read_epw(const std::filesystem::path& file) {
     throw InputError(text(weather.file, ": ends after ", number, number == 1 ? " line" : " lines",
                           "; the header of an EPW file has 8"));
   }
-  // A leap day may be there or not.
-  if (weather.hours.size() != promised && weather.hours.size() != promised + 24) {
+  if (weather.hours.size() < promised)
     throw InputError(text(weather.file, ": has ", weather.hours.size(), " hours; its DATA PERIODS say ", promised,
-                          weather.hours.size() < promised ? ". The file is cut short" : ""));
-  }
+                          ". The file is cut short"));
   if (weather.hours.empty()) throw InputError(text(weather.file, ": has no hours"));
+  settle_hour_0(weather);
   return weather;
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 
+#include "io/find_file.h"
 #include "io/formats/add_mesh.h"
 #include "io/formats/gltf_file.h"
 #include "io/formats/ies.h"
@@ -31,7 +32,10 @@ void check_range(const GltfFile& file, const Spectrum& s, double most, const std
 }
 
 /// The diffuse reflectance is the base colour; a metal reflects as much, only not diffusely.
-ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t index) {
+///
+/// texture(object, "baseColorTexture")  index in Model::textures of what a member of that name shows, if there is one
+template <class TextureOf>
+ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t index, const TextureOf& texture) {
   const std::string where = text("materials[", index, "]");
   ModelMaterial to;
   to.material.name = text_member(file, json, "name", where);
@@ -42,11 +46,14 @@ ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t 
   const Json& base = pbr != json.end() && pbr->is_object() ? *pbr : kEmpty;
   std::vector<double> colour =
       finite_numbers(file, base, "baseColorFactor", {1, 1, 1, 1}, where + ".pbrMetallicRoughness");
-  to.textured = base.contains("baseColorTexture") || json.contains("emissiveTexture");
+  to.texture = texture(base, "baseColorTexture");
+  to.glow_texture = texture(json, "emissiveTexture");
+  to.described = to.texture || base.contains("baseColorFactor");
   const Json& old_style = extension(json, "KHR_materials_pbrSpecularGlossiness");
   if (!old_style.empty() && base.empty()) {
     colour = finite_numbers(file, old_style, "diffuseFactor", {1, 1, 1, 1}, where);
-    to.textured = to.textured || old_style.contains("diffuseTexture");
+    to.texture = texture(old_style, "diffuseTexture");
+    to.described = to.texture || old_style.contains("diffuseFactor");
   }
   to.material.reflectance = to_spectrum(colour);
   check_range(file, to.material.reflectance, kBrightest, where + ".baseColorFactor");
@@ -69,6 +76,9 @@ ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t 
       to.material.transmittance[k] = std::min(1.0, passes * to.material.reflectance[k]);
     to.material.exitance = Spectrum(0.0);
   }
+  // Where the file says nothing, glTF's default is white, which no surface is.
+  to.described = to.described || !to.material.receives();
+  if (!to.described) to.material.reflectance = Spectrum(0.5);
   return to;
 }
 
@@ -117,7 +127,9 @@ class GltfReader {
     model_.files = file_.files();
     check_extensions();
     for (std::size_t m = 0; m < file_.list("materials").size(); ++m) {
-      model_.materials.push_back(read_material(file_, file_.element("materials", m), m));
+      model_.materials.push_back(
+          read_material(file_, file_.element("materials", m), m,
+                        [&](const Json& object, const char* key) { return texture_of(object, key); }));
     }
     no_material_ = MaterialId(model_.materials.size());
     ModelMaterial& none = model_.materials.emplace_back();
@@ -141,6 +153,55 @@ class GltfReader {
         file_.refuse("uses EXT_mesh_gpu_instancing, which is not read; export the instances as nodes");
       }
     }
+  }
+
+  /// Index in Model::textures of what the member `key` shows; nothing where there is no such member.
+  std::optional<std::size_t> texture_of(const Json& object, const char* key) {
+    const auto info = object.find(key);
+    if (info == object.end()) return std::nullopt;
+    const std::size_t image = image_of(*info);
+    const auto [at, is_new] = texture_by_image_.try_emplace(image, model_.textures.size());
+    if (is_new) model_.textures.push_back(read_image(image));
+    return at->second;
+  }
+
+  /// Of what is there of images, the one that a texture shows; a number that none has when that is damaged.
+  std::size_t image_of(const Json& info) const {
+    constexpr auto kNone = static_cast<std::size_t>(-1);
+    const auto index = [](const Json& object, const char* key) {
+      return object.is_object() && object.contains(key) && object[key].is_number_unsigned()
+                 ? object[key].get<std::size_t>()
+                 : kNone;
+    };
+    const Json& textures = file_.list("textures");
+    const std::size_t texture = index(info, "index");
+    if (texture >= textures.size()) return kNone;
+    // In a newer form that is read perhaps, else in the one that all programs know.
+    const std::size_t webp = index(extension(textures[texture], "EXT_texture_webp"), "source");
+    return webp < file_.list("images").size() ? webp : index(textures[texture], "source");
+  }
+
+  ModelTexture read_image(std::size_t index) const {
+    const Json& images = file_.list("images");
+    const std::string where = text("images[", index, "]");
+    if (index >= images.size() || !images[index].is_object()) return {"a texture that the file does not hold", {}, {}};
+    const Json& image = images[index];
+    ModelTexture texture{text_member(file_, image, "name", where), {}, {}};
+    const std::string uri = text_member(file_, image, "uri", where);
+    const bool is_inside = uri.empty() || uri.starts_with("data:");
+    if (!is_inside) texture.name = percent_decoded(uri.substr(uri.find_last_of("/\\") + 1));
+    if (texture.name.empty()) texture.name = where;
+    try {
+      if (!is_inside) {
+        texture.file = find_file(folder_, uri).value_or(find_file(folder_, percent_decoded(uri)).value_or(""));
+      } else if (!uri.empty()) {
+        texture.bytes = file_.uri_bytes(uri, where);
+      } else if (image.contains("bufferView")) {
+        texture.bytes = file_.view_bytes(whole_number(file_, image, "bufferView", 0, where));
+      }
+    } catch (const InputError&) {  // damaged: as if it were not there
+    }
+    return texture;
   }
 
   /// Nodes of the scene that is shown, each under its parent; without a scene, all that nobody has as child.
@@ -358,6 +419,7 @@ class GltfReader {
   GltfFile file_;
   std::filesystem::path folder_;
   std::map<std::size_t, std::shared_ptr<const PhotometricWeb>> profiles_;
+  std::map<std::size_t, std::size_t> texture_by_image_;
   std::string stem_;
   Model model_;
   UniqueNames names_;

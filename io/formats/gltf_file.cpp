@@ -72,24 +72,6 @@ bool decode_base64(std::string_view in, std::string& out) {
   return true;
 }
 
-std::string percent_decoded(std::string_view uri) {
-  const auto hex = [](char c) {
-    return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10 : -1;
-  };
-  std::string path;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const int high = uri[i] == '%' && i + 2 < uri.size() ? hex(uri[i + 1]) : -1;
-    const int low = high >= 0 ? hex(uri[i + 2]) : -1;
-    if (low >= 0) {
-      path += static_cast<char>(high * 16 + low);
-      i += 2;
-    } else {
-      path += uri[i];
-    }
-  }
-  return path;
-}
-
 std::size_t size_of_component(std::size_t type) {
   switch (type) {
     case 5120:
@@ -306,6 +288,24 @@ std::vector<std::uint32_t> GltfFile::indices(std::size_t accessor) const {
     at.push_back(static_cast<std::uint32_t>(value));
   }
   return at;
+}
+
+std::string percent_decoded(std::string_view uri) {
+  const auto hex = [](char c) {
+    return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10 : -1;
+  };
+  std::string path;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const int high = uri[i] == '%' && i + 2 < uri.size() ? hex(uri[i + 1]) : -1;
+    const int low = high >= 0 ? hex(uri[i + 2]) : -1;
+    if (low >= 0) {
+      path += static_cast<char>(high * 16 + low);
+      i += 2;
+    } else {
+      path += uri[i];
+    }
+  }
+  return path;
 }
 
 std::size_t whole_number(const GltfFile& file, const Json& object, const char* key, std::size_t otherwise,

@@ -57,6 +57,8 @@ class GltfFile {
   std::vector<std::string> buffers_;
 };
 
+/// A uri with its %20 and the like undone.
+std::string percent_decoded(std::string_view uri);
 /// Member `key` of an object as a whole number; `otherwise` when it is not there.
 std::size_t whole_number(const GltfFile& file, const nlohmann::json& object, const char* key, std::size_t otherwise,
                          const std::string& where);

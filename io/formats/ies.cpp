@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "io/find_file.h"
 #include "io/formats/number_words.h"
 #include "io/formats/photometry.h"
 #include "io/input_file.h"
@@ -20,10 +21,7 @@ class IesReader {
  public:
   IesReader(std::string_view bytes, const std::string& name, const std::filesystem::path& folder,
             std::vector<std::string>& warnings, std::vector<std::filesystem::path>* named)
-      : words_(bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0), name, kSeparators),
-        folder_(folder),
-        warnings_(warnings),
-        named_(named) {
+      : words_(bytes, name, kSeparators), folder_(folder), warnings_(warnings), named_(named) {
     web_.name = name;
   }
 
@@ -32,7 +30,10 @@ class IesReader {
     read_luminaire();
     read_angles();
     read_candelas();
-    refuse_surplus();
+    words_.end(warnings_, [&](std::size_t more) {
+      words_.refuse(text(more, more == 1 ? " more number than " : " more numbers than ", vertical_count_, " x ",
+                         horizontal_count_, " candelas; the counts of angles do not fit the data"));
+    });
     if (web_.type == WebType::C) fit_circle();
     const double lamps = web_.lamp_flux * std::max(1.0, scale_);
     complete_web(web_, lamps, true, warnings_);
@@ -59,15 +60,14 @@ class IesReader {
     if (kind == "none") return;
     if (kind == "include") return read_tilt_table(words_);
     if (tilt.empty()) words_.refuse("TILT= says nothing; NONE, INCLUDE or the name of a file is known");
-    const std::filesystem::path file = folder_ / tilt;
-    if (named_) named_->push_back(file);
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) {
+    const auto file = find_file(folder_, tilt);
+    if (named_) named_->push_back(file.value_or(folder_ / tilt));
+    if (!file) {
       words_.refuse(text("TILT names the file '", quotable(tilt),
                          "', which is not there; put it beside this file, or write TILT=NONE"));
     }
-    const std::string bytes = read_input_file(file, kMaxBytes);
-    NumberWords words(bytes, short_name(file), kSeparators);
+    const std::string bytes = read_input_file(*file, kMaxBytes);
+    NumberWords words(bytes, short_name(*file), kSeparators);
     read_tilt_table(words);
   }
 
@@ -166,26 +166,18 @@ class IesReader {
   }
 
   void read_candelas() {
-    for (const double h : web_.horizontal) {
-      for (std::size_t v = 0; v < vertical_count_; ++v) {
-        const auto what = [&] { return text("candela at V = ", web_.vertical[v], ", H = ", h); };
-        const double I = words_.number(what);
-        if (I < 0) words_.refuse(text(what(), " = ", I, " is negative"));
-        web_.candela.push_back(static_cast<float>(I * scale_));
-      }
+    std::vector<std::size_t> line;
+    const auto what = [&](std::size_t i) {
+      return text("candela at V = ", web_.vertical[i % vertical_count_],
+                  ", H = ", web_.horizontal[i / vertical_count_]);
+    };
+    for (std::size_t i = 0; i < vertical_count_ * horizontal_count_; ++i) {
+      web_.candela.push_back(static_cast<float>(words_.number([&] { return what(i); }) * scale_));
+      line.push_back(words_.line_number());
     }
-  }
-
-  void refuse_surplus() {
-    std::size_t more = 0;
-    for (std::string_view w = words_.word(); !w.empty(); w = words_.word()) {
-      if (!to_number(w)) continue;
-      if (++more == 1) surplus_line_ = words_.line_number();
-    }
-    if (more > 0) {
-      throw InputError(text(web_.name, ":", surplus_line_, ": ", more, " more numbers than ", vertical_count_, " x ",
-                            horizontal_count_, " candelas; the counts of angles do not fit the data"));
-    }
+    if (const std::size_t i = settle_negative(web_, warnings_); i < web_.candela.size())
+      throw InputError(text(web_.name, ":", line[i], ": ", what(i), " = ",
+                            std::round(web_.candela[i] / scale_ * 1e6) / 1e6, " is negative"));
   }
 
   /// Planes that stop short of 360 degrees, 0 to 345: the first one closes the circle.
@@ -215,7 +207,7 @@ class IesReader {
   std::vector<std::filesystem::path>* named_;
   PhotometricWeb web_;
   bool since_2002_ = false;
-  std::size_t vertical_count_ = 0, horizontal_count_ = 0, surplus_line_ = 0;
+  std::size_t vertical_count_ = 0, horizontal_count_ = 0;
   double scale_ = 1;  ///< multiplier and factors of the ballast
 };
 

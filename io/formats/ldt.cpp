@@ -18,7 +18,7 @@ constexpr int kMostLampSets = 20;
 class LdtReader {
  public:
   LdtReader(std::string_view bytes, const std::string& name, std::vector<std::string>& warnings)
-      : words_(bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0), name, " \t\v\f;\x1a"), warnings_(warnings) {
+      : words_(bytes, name, " \t\v\f;\x1a"), warnings_(warnings) {
     web_.name = name;
   }
 
@@ -47,10 +47,10 @@ class LdtReader {
     for (int i = 0; i < 10; ++i) value("a direct ratio");
     read_angles();
     read_candelas(conversion * web_.lamp_flux / 1000);
-    if (!words_.word().empty()) {
+    words_.end(warnings_, [&](std::size_t) {
       words_.refuse(text("more values than ", gammas_, " intensities in each of ", stored_,
                          " planes; the counts or the symmetry do not fit the data"));
-    }
+    });
     web_.declared_flux = web_.lamp_flux * output_ratio / 100;
     complete_web(web_, web_.declared_flux, false, warnings_);
     return std::move(web_);
@@ -138,16 +138,17 @@ class LdtReader {
   }
 
   void read_candelas(double scale) {
-    for (std::size_t k = 0; k < stored_; ++k) {
-      for (std::size_t g = 0; g < gammas_; ++g) {
-        const auto what = [&] {
-          return text("intensity at gamma = ", web_.vertical[g], " in plane C = ", web_.horizontal[k]);
-        };
-        const double I = words_.number(what);
-        if (I < 0) words_.refuse(text(what(), " = ", I, " is negative"));
-        web_.candela.push_back(static_cast<float>(I * scale));
-      }
+    std::vector<std::size_t> line;
+    const auto what = [&](std::size_t i) {
+      return text("intensity at gamma = ", web_.vertical[i % gammas_], " in plane C = ", web_.horizontal[i / gammas_]);
+    };
+    for (std::size_t i = 0; i < stored_ * gammas_; ++i) {
+      web_.candela.push_back(static_cast<float>(words_.number([&] { return what(i); }) * scale));
+      line.push_back(words_.line_number());
     }
+    if (const std::size_t i = settle_negative(web_, warnings_); i < web_.candela.size())
+      throw InputError(text(web_.name, ":", line[i], ": ", what(i), " = ",
+                            std::round(web_.candela[i] / scale * 1e6) / 1e6, " is negative"));
   }
 
   void skip(std::string_view what) {

@@ -12,18 +12,28 @@ namespace clerestory {
 
 enum class Up { y, z };
 
+/// An image that materials of a model show.
+struct ModelTexture {
+  std::string name;            ///< for people
+  std::filesystem::path file;  ///< empty: it is in `bytes`, or not there at all
+  std::string bytes;           ///< of an image inside of the model
+};
+
 /// A material as the model has it, and what was assumed about it; the assumptions matter only where the scene file
 /// says nothing of the material.
 struct ModelMaterial {
   Material material;
-  bool described = true;       ///< false: the model has only its name, or not even that
-  bool textured = false;       ///< a texture was left out
+  bool described = true;                    ///< false: the model has only its name, or not even that
+  std::optional<std::size_t> texture;       ///< of Model::textures: its colour times this reflectance is what shows
+  std::optional<std::size_t> glow_texture;  ///< the same of what it emits
+  std::string took, kept;      ///< textures whose means are in its colours, and those that could not be read, and why
   bool unitless_glow = false;  ///< its emission had no unit and was taken as radiance [W/(m2 sr)]
 };
 
 struct Model {
   PolygonSoup polygons;
   std::vector<ModelMaterial> materials;
+  std::vector<ModelTexture> textures;
   std::vector<std::string> surfaces;
   LightSpec lights;
   std::vector<std::string> warnings;         ///< without the file's name
@@ -49,9 +59,10 @@ Model read_ply(const std::filesystem::path& file);
 Model read_stl(const std::filesystem::path& file);
 Model read_off(const std::filesystem::path& file);
 
-/// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`, textures to `named`.
-std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                                    std::vector<std::filesystem::path>& named);
+/// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`, what they show to
+/// `textures`, files that it names to `named`.
+std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<ModelTexture>& textures,
+                                    std::vector<std::string>& warnings, std::vector<std::filesystem::path>& named);
 
 /// Takes a transparent material (opacity below 1/2) as glass that passes what it does not cover.
 void apply_opacity(Material& material, double opacity);

@@ -106,8 +106,16 @@ void walk(Walker& walker, Model& model) {
     maybe(walker, m.material.total_power);
     walker.plain(m.material.sides);
     walker.plain(m.described);
-    walker.plain(m.textured);
+    maybe(walker, m.texture);
+    maybe(walker, m.glow_texture);
     walker.plain(m.unitless_glow);
+  });
+  each(walker, model.textures, [&](ModelTexture& texture) {
+    std::string file = texture.file.string();
+    walker.string(texture.name);
+    walker.string(file);
+    walker.string(texture.bytes);
+    texture.file = file;
   });
   each(walker, model.surfaces, [&](std::string& name) { walker.string(name); });
   each(walker, model.warnings, [&](std::string& warning) { walker.string(warning); });
@@ -119,12 +127,17 @@ void walk(Walker& walker, Model& model) {
 bool is_consistent(const Model& model) {
   const PolygonSoup& soup = model.polygons;
   const std::size_t faces = soup.material.size();
+  const auto has = [&](const std::optional<std::size_t>& texture) {
+    return !texture || *texture < model.textures.size();
+  };
   return soup.surface.size() == faces && soup.face_begin.size() == faces + 1 && soup.face_begin.front() == 0 &&
          soup.face_begin.back() == soup.corner.size() &&
          std::is_sorted(soup.face_begin.begin(), soup.face_begin.end()) &&
          std::all_of(soup.corner.begin(), soup.corner.end(), [&](auto c) { return c < soup.vertices.size(); }) &&
          std::all_of(soup.material.begin(), soup.material.end(), [&](auto m) { return m < model.materials.size(); }) &&
-         std::all_of(soup.surface.begin(), soup.surface.end(), [&](auto s) { return s < model.surfaces.size(); });
+         std::all_of(soup.surface.begin(), soup.surface.end(), [&](auto s) { return s < model.surfaces.size(); }) &&
+         std::all_of(model.materials.begin(), model.materials.end(),
+                     [&](const ModelMaterial& m) { return has(m.texture) && has(m.glow_texture); });
 }
 
 }  // namespace

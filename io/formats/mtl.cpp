@@ -1,8 +1,10 @@
-// Wavefront MTL: newmtl, Kd, Ke, d and Tr. Source: Ramey, Rose & Tyerman, "MTL material format", 1995.
+// Wavefront MTL: newmtl, Kd, Ke, their textures map_Kd and map_Ke, d and Tr. Source: Ramey, Rose & Tyerman, "MTL
+// material format", 1995.
 
 #include <algorithm>
 #include <numbers>
 
+#include "io/find_file.h"
 #include "io/formats/model.h"
 #include "io/input_file.h"
 #include "io/text.h"
@@ -35,38 +37,72 @@ bool names_texture(std::string_view key) {
   return key.starts_with("map_") || key == "bump" || key == "disp" || key == "decal" || key == "refl" || key == "norm";
 }
 
-/// A texture's name stands behind options, and may have blanks in it: every end of the line that is a file.
-void add_texture(const std::filesystem::path& folder, std::string_view rest,
-                 std::vector<std::filesystem::path>& named) {
-  std::error_code error;
-  for (int words = 0; words < 20 && !(rest = trimmed(rest)).empty(); ++words, next_word(rest))
-    if (std::filesystem::is_regular_file(folder / rest, error)) named.push_back(folder / rest);
+/// What stands behind the options of a texture: "-s 2 2 1 -clamp on my wood.png".
+std::string_view image_name(std::string_view rest) {
+  struct Option {
+    std::string_view name;
+    int arguments;
+    bool may_be_fewer;
+  };
+  constexpr Option kOptions[] = {
+      {"-blendu", 1, false}, {"-blendv", 1, false},  {"-boost", 1, false}, {"-bm", 1, false}, {"-cc", 1, false},
+      {"-clamp", 1, false},  {"-imfchan", 1, false}, {"-mm", 2, false},    {"-o", 3, true},   {"-s", 3, true},
+      {"-t", 3, true},       {"-texres", 1, false},  {"-type", 1, false}};
+  for (;;) {
+    rest = trimmed(rest);
+    std::string_view behind = rest;
+    const std::string word = to_lower(next_word(behind));
+    const auto option = std::ranges::find_if(kOptions, [&](const Option& o) { return o.name == word; });
+    if (option == std::end(kOptions)) return rest;
+    rest = behind;
+    for (int k = 0; k < option->arguments; ++k) {
+      const std::string_view argument = next_word(behind);
+      if (option->may_be_fewer && !to_number(argument)) break;
+      rest = behind;
+    }
+  }
+}
+
+/// Index of the texture that a line names; it joins the others when it is new.
+std::size_t texture_named(std::string_view rest, const std::filesystem::path& folder,
+                          std::vector<ModelTexture>& textures) {
+  const std::string_view named = image_name(rest);
+  auto file = find_file(folder, named);
+  if (!file) file = find_file(folder, named.substr(0, named.find(" -")));  // options may follow as well
+  const std::string_view name = unquoted(named);
+  ModelTexture texture{std::string(name.substr(name.find_last_of("/\\") + 1)), {}, {}};
+  if (file) texture.name = short_name(*file), texture.file = *file;
+  const auto same = std::ranges::find_if(
+      textures, [&](const ModelTexture& other) { return other.file == texture.file && other.name == texture.name; });
+  if (same != textures.end()) return static_cast<std::size_t>(same - textures.begin());
+  textures.push_back(std::move(texture));
+  return textures.size() - 1;
 }
 
 }  // namespace
 
-std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                                    std::vector<std::filesystem::path>& named) {
+std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<ModelTexture>& textures,
+                                    std::vector<std::string>& warnings, std::vector<std::filesystem::path>& named) {
   const std::string bytes = read_input_file(file, kMaxBytes);
   const std::string name = short_name(file);
   std::vector<ModelMaterial> materials;
   std::vector<double> opacity, dissolve;  // of each material; dissolve -1: not given
   std::size_t line_number = 0;
-  for (std::size_t begin = 0; begin < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
-    std::string_view rest = trimmed(std::string_view(bytes).substr(begin, end - begin));
-    begin = end + 1;
+  for (std::string_view lines = text_bytes(bytes, name); !lines.empty();) {
+    std::string_view rest = trimmed(next_line(lines));
     const std::string where = text(name, ":", ++line_number, ": ");
     const std::string_view key = next_word(rest);
     if (key.empty() || key[0] == '#') continue;
+    if (names_texture(key))
+      if (const auto image = find_file(file.parent_path(), image_name(rest))) named.push_back(*image);
     if (key == "newmtl") {
       Material& material = materials.emplace_back().material;
       material.name = trimmed(rest);
+      materials.back().described = false;  // until there is a colour
       opacity.push_back(1);
       dissolve.push_back(-1);
       continue;
     }
-    if (names_texture(key)) add_texture(file.parent_path(), rest, named);
     if (materials.empty()) {
       if (key == "Kd" || key == "Ke") throw InputError(text(where, key, " stands before the first newmtl"));
       continue;
@@ -76,10 +112,12 @@ std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vect
     if (key == "Kd" || key == "Ke") {
       const std::optional<Spectrum> colour = read_colour(rest, where);
       if (!colour) {
+        current.described = current.described || key == "Kd";
         warnings.push_back(text(where, "spectral and xyz colours are not read; '", material.name, "' keeps ",
                                 key == "Kd" ? "reflectance 0.5" : "no emission"));
       } else if (key == "Kd") {
         material.reflectance = *colour;
+        current.described = true;
       } else {
         material.exitance = std::numbers::pi * *colour;
         current.unitless_glow = !material.exitance.is_black();
@@ -92,13 +130,18 @@ std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vect
         throw InputError(text(where, key, " = '", quotable(word), "' is outside [0, 1]"));
       }
       (key == "d" ? dissolve : opacity).back() = key == "d" ? *value : 1 - *value;
-    } else if (key == "map_Kd") {
-      current.textured = true;
+    } else if (const std::string map = to_lower(key); map == "map_kd" || map == "map_ke") {
+      (map == "map_kd" ? current.texture : current.glow_texture) = texture_named(rest, file.parent_path(), textures);
     }
   }
   // d wins: writers do not agree on whether Tr 1 is clear or solid.
   for (std::size_t m = 0; m < materials.size(); ++m) {
     apply_opacity(materials[m].material, dissolve[m] >= 0 ? dissolve[m] : opacity[m]);
+    // Without a colour, or with black, as some write it there, the texture says all.
+    ModelMaterial& material = materials[m];
+    if (material.texture && (!material.described || material.material.reflectance.is_black()))
+      material.material.reflectance = Spectrum(1.0);
+    material.described = material.described || material.texture || !material.material.receives();
   }
   return materials;
 }

@@ -1,10 +1,12 @@
 #pragma once
 // Numbers of a text file, one after the other, with the line they stand on.
 
-#include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 
@@ -15,7 +17,7 @@ class NumberWords {
  public:
   /// separators  what stands between words besides blanks and line ends.
   NumberWords(std::string_view bytes, std::string file, std::string_view separators)
-      : rest_(bytes), file_(std::move(file)), separators_(separators) {}
+      : rest_(text_bytes(bytes, file)), file_(std::move(file)), separators_(separators) {}
 
   [[noreturn]] void refuse(const std::string& what) const { throw InputError(text(file_, ":", line_, ": ", what)); }
 
@@ -23,10 +25,7 @@ class NumberWords {
   bool line(std::string_view& out) {
     if (rest_.empty()) return false;
     ++line_;
-    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-    out = rest_.substr(0, end);
-    const bool crlf = rest_.substr(end).starts_with("\r\n");
-    rest_.remove_prefix(std::min(end + (crlf ? 2 : 1), rest_.size()));
+    out = next_line(rest_);
     words_ = {};
     return true;
   }
@@ -57,16 +56,36 @@ class NumberWords {
   }
   template <class What>
   double checked(std::string_view w, const What& what) const {
-    std::string with_point;
-    if (w.find(',') != w.npos) {  // a decimal comma, where commas do not separate
-      with_point = w;
-      with_point[with_point.find(',')] = '.';
-      w = with_point;
-    }
-    const auto value = to_number(w);
+    const auto value = number_of(w);
     if (!value) refuse(text("'", quotable(w), "' is not a number; expected ", what()));
     if (!(*value > -1e12 && *value < 1e12)) refuse(text(what(), " = ", quotable(w), " is out of every range"));
     return *value;
+  }
+
+  /// A word as a number, perhaps with a decimal comma, where commas do not separate.
+  static std::optional<double> number_of(std::string_view w) {
+    const std::size_t comma = w.find(',');
+    if (comma == w.npos) return to_number(w);
+    std::string with_point(w);
+    with_point[comma] = '.';
+    return to_number(with_point);
+  }
+
+  /// What stands behind the data. Text is left out with a warning; numbers mean that the data is not what it seems.
+  template <class Refuse>
+  void end(std::vector<std::string>& warnings, const Refuse& refuse_numbers) {
+    const std::string_view first = word();
+    if (first.empty()) return;
+    const std::size_t line = line_;
+    if (!number_of(first)) {
+      warnings.push_back(
+          text(file_, ":", line, ": the text behind the data, '", quotable(first), " ...', is left out"));
+      return;
+    }
+    std::size_t more = 1;
+    for (std::string_view w = word(); !w.empty(); w = word()) more += number_of(w).has_value();
+    line_ = line;
+    refuse_numbers(more);
   }
 
   std::size_t line_number() const { return line_; }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <unordered_map>
 
+#include "io/find_file.h"
 #include "io/formats/model.h"
 #include "io/input_file.h"
 #include "io/text.h"
@@ -22,7 +23,7 @@ class Lines {
   bool next(std::string_view& line) {
     if (rest_.empty()) return false;
     ++number_;
-    line = cut();
+    line = next_line(rest_);
     if (line.empty() || line.back() != '\\') return true;
     joined_.clear();
     while (!line.empty() && line.back() == '\\') {
@@ -30,7 +31,7 @@ class Lines {
       joined_ += ' ';
       if (rest_.empty()) break;
       ++number_;
-      line = cut();
+      line = next_line(rest_);
     }
     if (line.empty() || line.back() != '\\') joined_ += line;
     line = joined_;
@@ -39,13 +40,6 @@ class Lines {
   std::size_t number() const { return number_; }
 
  private:
-  std::string_view cut() {
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    std::string_view line = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    return line;
-  }
   std::string_view rest_;
   std::string joined_;
   std::size_t number_ = 0;
@@ -57,7 +51,7 @@ class ObjReader {
 
   Model read() {
     const std::string bytes = read_input_file(file_, kMaxBytes);
-    Lines lines(bytes);
+    Lines lines(text_bytes(bytes, name_));
     std::string_view line;
     while (lines.next(line)) {
       line_ = lines.number();
@@ -158,22 +152,28 @@ class ObjReader {
 
   void start_material(std::string_view name) { material_ = material_named(name.empty() ? kDefaultMaterial : name); }
 
-  /// One name with blanks in it, or several names.
+  /// One name with blanks in it, or several names, perhaps in quotation marks.
   void read_libraries(std::string_view names) {
     const std::filesystem::path folder = file_.parent_path();
-    std::error_code error;  // a name that is too long is no file
-    if (std::filesystem::is_regular_file(folder / names, error)) return read_library(folder / names);
-    for (std::string_view word = next_word(names); !word.empty(); word = next_word(names)) read_library(folder / word);
+    const std::string lower = to_lower(names);
+    const bool is_one = lower.find(".mtl") == lower.rfind(".mtl");
+    if (const auto library = is_one ? find_file(folder, names) : find_path(folder, names))
+      return read_library(*library);
+    while (!(names = trimmed(names)).empty()) {
+      const std::size_t closing = names.front() == '"' ? names.find('"', 1) : names.npos;
+      std::string_view name = closing == names.npos ? next_word(names) : names.substr(0, closing + 1);
+      if (closing != names.npos) names.remove_prefix(closing + 1);
+      if (const auto library = find_file(folder, name))
+        read_library(*library);
+      else
+        model_.warnings.push_back(
+            text("material file '", quotable((folder / unquoted(name)).string()), "' is missing"));
+    }
   }
 
   void read_library(const std::filesystem::path& library) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(library, error)) {
-      model_.warnings.push_back(text("material file '", quotable(library.string()), "' is missing"));
-      return;
-    }
     model_.files.push_back(library);
-    for (ModelMaterial& material : read_mtl(library, model_.warnings, model_.files)) {
+    for (ModelMaterial& material : read_mtl(library, model_.textures, model_.warnings, model_.files)) {
       described_.try_emplace(material.material.name, material);
     }
   }

@@ -15,7 +15,10 @@ constexpr std::uintmax_t kMaxBytes = 4ull << 30;
 class OffReader {
  public:
   explicit OffReader(const std::filesystem::path& file)
-      : name_(short_name(file)), stem_(file.stem().string()), bytes_(read_input_file(file, kMaxBytes)), rest_(bytes_) {}
+      : name_(short_name(file)),
+        stem_(file.stem().string()),
+        bytes_(read_input_file(file, kMaxBytes)),
+        rest_(text_bytes(bytes_, name_)) {}
 
   Model read() {
     std::string_view line = next_line("the word OFF");
@@ -64,9 +67,7 @@ class OffReader {
   /// The next line that says something.
   std::string_view next_line(const std::string& wanted) {
     while (!rest_.empty()) {
-      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-      std::string_view line = rest_.substr(0, end);
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      std::string_view line = clerestory::next_line(rest_);
       ++line_;
       line = trimmed(line.substr(0, line.find('#')));
       if (!line.empty()) return line;

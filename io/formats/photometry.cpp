@@ -69,6 +69,20 @@ void mirror_right_to_left(PhotometricWeb& web) {
 
 }  // namespace
 
+std::size_t settle_negative(PhotometricWeb& web, std::vector<std::string>& warnings) {
+  std::vector<float>& I = web.candela;
+  const float least = -0.05f * *std::max_element(I.begin(), I.end());
+  const auto wrong = std::find_if(I.begin(), I.end(), [&](float x) { return x < 0 && x < least; });
+  if (wrong != I.end()) return static_cast<std::size_t>(wrong - I.begin());
+  const auto negative = std::count_if(I.begin(), I.end(), [](float x) { return x < 0; });
+  if (negative == 0) return I.size();
+  warnings.push_back(text(web.name, ": ", negative, negative == 1 ? " intensity is" : " intensities are",
+                          " negative, down to ", std::round(*std::min_element(I.begin(), I.end()) * 1e6) / 1e6,
+                          " cd; 0 is taken"));
+  for (float& x : I) x = std::max(x, 0.0f);
+  return I.size();
+}
+
 void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vector<std::string>& warnings) {
   if (web.type != WebType::C) {
     if (web.symmetry != WebSymmetry::none) mirror_right_to_left(web);

@@ -21,4 +21,9 @@ PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<st
 /// declared  flux that the intensities should add up to [lm], 0 when the file does not say; at_most: or less.
 void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vector<std::string>& warnings);
 
+/// Negative candelas: of up to a twentieth of the peak they are a meter's offset and become 0, with a warning.
+///
+/// returns  the place of the first one that is more than that; candela.size() where there is none.
+std::size_t settle_negative(PhotometricWeb& web, std::vector<std::string>& warnings);
+
 }  // namespace clerestory

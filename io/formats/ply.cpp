@@ -60,7 +60,10 @@ struct Element {
 class PlyReader {
  public:
   explicit PlyReader(const std::filesystem::path& file)
-      : name_(short_name(file)), stem_(file.stem().string()), bytes_(read_input_file(file, kMaxBytes)), rest_(bytes_) {}
+      : name_(short_name(file)),
+        stem_(file.stem().string()),
+        bytes_(read_input_file(file, kMaxBytes)),
+        rest_(text_bytes(bytes_, name_)) {}
 
   Model read() {
     read_header();
@@ -89,7 +92,9 @@ class PlyReader {
 
   std::string_view next_line() {
     if (rest_.empty()) refuse("the header ends without 'end_header'; is the file cut off?");
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    // Lines end as the first one does: after a CR alone, a binary body may begin with the byte LF.
+    if (line_ == 0) ends_in_cr_ = rest_.starts_with("ply\r") && !rest_.starts_with("ply\r\n");
+    const std::size_t end = std::min(rest_.find(ends_in_cr_ ? '\r' : '\n'), rest_.size());
     const std::string_view line = rest_.substr(0, std::min<std::size_t>(end, 4096));
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
     ++line_;
@@ -249,7 +254,7 @@ class PlyReader {
   std::string name_, stem_, bytes_;
   std::string_view rest_;
   std::size_t line_ = 0;
-  bool is_text_ = true, swaps_ = false;
+  bool ends_in_cr_ = false, is_text_ = true, swaps_ = false;
   std::vector<Element> elements_;
   const Element* element_ = nullptr;
   std::size_t row_ = 0;

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include <dlfcn.h>
-
 #include "io/formats/decode_image.h"
+#include "io/formats/image_module.h"
 #include "io/formats/run_apart.h"
 #include "io/input_file.h"
 #include "io/text.h"
@@ -18,27 +17,12 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 2ull << 30;
 
-/// Beside the program, in the build tree as where it is installed; else where the library was installed.
-void* open_module() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  for (const std::filesystem::path& folder : {program.parent_path().parent_path() / CLERESTORY_MODULE_FOLDER,
-                                              std::filesystem::path(CLERESTORY_INSTALLED_MODULE_FOLDER)}) {
-    if (void* module = dlopen((folder / kDecodeImageModule).c_str(), RTLD_NOW)) return module;
-  }
-  return nullptr;
-}
-
 /// What DecodeImage hands over, as one string.
 std::string decode(const std::string& file, const std::string& format) {
-  void* module = open_module();
-  void* symbol = module ? dlsym(module, kDecodeImageSymbol) : nullptr;
-  if (!symbol) return text("ecannot be read: ", kDecodeImageModule, " or what it needs is not installed");
+  void* function = image_function(kDecodeImageSymbol);
+  if (!function) return 'e' + no_image_module();
   std::string answer;
-  reinterpret_cast<DecodeImage*>(symbol)(file.c_str(), format.c_str(), &answer,
-                                         [](void* to, const void* bytes, std::size_t n) {
-                                           static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), n);
-                                         });
+  reinterpret_cast<DecodeImage*>(function)(file.c_str(), format.c_str(), &answer, append_bytes);
   return answer;
 }
 

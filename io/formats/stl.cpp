@@ -21,7 +21,7 @@ struct StlText {
   std::string_view word() {
     while (!rest.empty() &&
            (rest.front() == ' ' || rest.front() == '\t' || rest.front() == '\r' || rest.front() == '\n')) {
-      if (rest.front() == '\n') ++line;
+      if (rest.front() == '\n' || (rest.front() == '\r' && !rest.starts_with("\r\n"))) ++line;
       rest.remove_prefix(1);
     }
     const std::size_t n = std::min(rest.find_first_of(" \t\r\n"), rest.size());
@@ -30,7 +30,7 @@ struct StlText {
     return found;
   }
   std::string_view to_line_end() {
-    const std::size_t n = std::min(rest.find('\n'), rest.size());
+    const std::size_t n = std::min(rest.find_first_of("\r\n"), rest.size());
     const std::string_view found = rest.substr(0, n);
     rest.remove_prefix(n);
     return trimmed(found);
@@ -86,6 +86,17 @@ void read_text(std::string_view bytes, const std::string& name, const std::strin
   if (is_open) refuse("the file ends before 'endsolid'; is it cut off?");
 }
 
+/// As the header of a binary file says; 0 when there is none.
+std::uint32_t count_of_triangles(std::string_view bytes) {
+  std::uint32_t triangles = 0;
+  if (bytes.size() >= kHeader) std::memcpy(&triangles, bytes.data() + 80, sizeof(triangles));
+  return triangles;
+}
+
+bool is_binary(std::string_view bytes) {
+  return bytes.size() >= kHeader && bytes.size() == kHeader + std::uint64_t{count_of_triangles(bytes)} * kTriangle;
+}
+
 void read_binary(std::string_view bytes, std::size_t triangles, const std::string& name, const std::string& stem,
                  Model& model) {
   model.surfaces.push_back(stem);
@@ -106,15 +117,16 @@ void read_binary(std::string_view bytes, std::size_t triangles, const std::strin
 }  // namespace
 
 Model read_stl(const std::filesystem::path& file) {
-  const std::string bytes = read_input_file(file, kMaxBytes);
+  const std::string whole = read_input_file(file, kMaxBytes);
   const std::string name = short_name(file), stem = file.stem().string();
   Model model = model_without_materials();
-  std::uint32_t triangles = 0;
-  if (bytes.size() >= kHeader) std::memcpy(&triangles, bytes.data() + 80, sizeof(triangles));
+  std::string_view bytes = whole;
+  // Binary files may start with "solid", or with what looks like a mark; their size gives them away.
+  if (!is_binary(bytes)) bytes = text_bytes(bytes, name);
+  const std::uint32_t triangles = count_of_triangles(bytes);
   const std::uint64_t binary_size = kHeader + std::uint64_t{triangles} * kTriangle;
-  const std::string_view start = trimmed(std::string_view(bytes).substr(0, 256));
-  // Binary files may start with "solid" as well; their size gives them away.
-  if (bytes.size() >= kHeader && bytes.size() == binary_size) {
+  const std::string_view start = trimmed(bytes.substr(0, 256));
+  if (is_binary(bytes)) {
     read_binary(bytes, triangles, name, stem, model);
   } else if (to_lower(start.substr(0, 5)) == "solid") {
     read_text(bytes, name, stem, model);

@@ -11,8 +11,9 @@ constexpr std::size_t kShown = 6;
 
 }  // namespace
 
-void NameList::add(const std::string& name) {
-  if (++count_ <= kShown) list_ += (list_.empty() ? "'" : ", '") + quotable(name) + "'";
+void NameList::add(const std::string& name, const std::string& remark) {
+  if (++count_ > kShown) return;
+  list_ += (list_.empty() ? "'" : ", '") + quotable(name) + "'" + (remark.empty() ? "" : " " + remark);
 }
 
 std::string NameList::str() const { return count_ > kShown ? text(list_, " and ", count_ - kShown, " more") : list_; }
@@ -20,7 +21,11 @@ std::string NameList::str() const { return count_ > kShown ? text(list_, " and "
 Material OwnMaterials::settle(const ModelMaterial& own) {
   Material material = own.material;
   if (!own.described) undescribed_.add(material.name);
-  if (own.textured) textured_.add(material.name);
+  if (!own.took.empty()) {
+    const std::string file = "(" + own.took + ")";
+    textured_.add(material.name, (textured_.empty() ? "takes the mean of its texture " : "") + file);
+  }
+  if (!own.kept.empty()) unread_.add(material.name, "(" + own.kept + ")");
   if (own.unitless_glow) glowing_.add(material.name);
   if (material.kind == MaterialKind::glass) glass_.add(material.name);
   if (material.reflectance.max() >= 1) {
@@ -38,8 +43,10 @@ std::vector<std::string> OwnMaterials::warnings() const {
   if (!white_.empty()) {
     lines.push_back(text("reflectance 1 or more is taken as ", kWhitestReflectance, " for ", white_.str()));
   }
-  if (!textured_.empty()) {
-    lines.push_back(text("textures are not read; ", textured_.str(), " takes its plain colour"));
+  if (!textured_.empty()) lines.push_back(textured_.str());
+  if (!unread_.empty()) {
+    lines.push_back(text("textures that cannot be read, so that the plain colour counts, or 0.5 where that is white: ",
+                         unread_.str()));
   }
   if (!glass_.empty()) {
     lines.push_back(

@@ -12,7 +12,8 @@ namespace clerestory {
 /// 'a', 'b', 'c' and 12 more
 class NameList {
  public:
-  void add(const std::string& name);
+  /// remark  stands behind the name.
+  void add(const std::string& name, const std::string& remark = "");
   bool empty() const { return count_ == 0; }
   std::string str() const;
 
@@ -30,7 +31,7 @@ class OwnMaterials {
   std::vector<std::string> warnings() const;
 
  private:
-  NameList undescribed_, white_, textured_, glass_, glowing_;
+  NameList undescribed_, white_, textured_, unread_, glass_, glowing_;
 };
 
 }  // namespace clerestory

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "io/formats/model.h"
+#include "io/formats/texture_means.h"
 #include "io/input_file.h"
 #include "io/memory_size.h"
 #include "io/parse_json.h"
@@ -75,6 +76,10 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     if (model == read_before.end()) {
       model = read_before.emplace(model_file, read_model(model_file)).first;
       scene.files.insert(scene.files.end(), model->second.files.begin(), model->second.files.end());
+      take_texture_means(model->second, [&](const std::string& material) {
+        return std::ranges::any_of(
+            rules, [&](const MaterialRule& rule) { return matches(rule.pattern, clean_text(material)); });
+      });
     } else {
       model->second.warnings.clear();  // said already
     }

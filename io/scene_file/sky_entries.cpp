@@ -159,9 +159,22 @@ double middle_of_daylight(const Place& place, Moment moment, int hour_end) {
   return lit > 0 ? sum / lit : hour_end - 0.5;
 }
 
+/// Hours between the noon of the sun's mean course and that of the clock.
+double hours_off(const Place& place) { return std::remainder(place.longitude_deg / 15 - place.timezone, 24); }
+/// More than any time zone of the world asks for, but for a strip of western China.
+bool is_odd(const Place& place) { return std::abs(hours_off(place)) > 3; }
+
+void warn_of_place(const std::string& who, const Place& place, std::vector<std::string>& warnings) {
+  if (!is_odd(place)) return;
+  warnings.push_back(text(who, ": longitude ", place.longitude_deg, " and timezone ", place.timezone, " are ",
+                          std::round(std::abs(hours_off(place)) * 10) / 10,
+                          " hours of the sun apart; longitude counts east positive, west negative, and timezone in ",
+                          "hours ahead of UTC (gensky and gendaylit count both the other way round)"));
+}
+
 /// Finds the hour of the weather file; place and time of the scene become those of the file where it says none.
 HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, const std::filesystem::path& folder,
-                               PlaceAndTime& at) {
+                               PlaceAndTime& at, std::vector<std::string>& warnings) {
   const std::string named = *sky.word("weather");
   require_file(folder / named, sky.place("weather"), named);
   const bool by_day = sky.has("day_of_year") || sky.has("hour");
@@ -174,7 +187,11 @@ HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, co
                           "\"2026-03-21T12:00\", or day_of_year and hour into the sky"));
   }
   const Weather weather = read_epw(folder / named);
-  if (!at.place) at.place = weather.place;
+  warnings.insert(warnings.end(), weather.warnings.begin(), weather.warnings.end());
+  if (!at.place) {
+    at.place = weather.place;
+    warn_of_place(weather.file, *at.place, warnings);
+  }
 
   // Hours are counted by their end: 12:00 is the end of hour 12, 12:10 lies in hour 13.
   Moment moment;
@@ -201,15 +218,18 @@ HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, co
       hour = 24;
     }
   }
-  const WeatherHour& found = weather.at(moment.month, moment.day, hour);
+  const WeatherHour& found = weather.at(moment.month, moment.day, hour, moment.year);
   if (by_day) moment.year = found.year;
   if (by_day || at.on_the_hour) moment.hour = middle_of_daylight(*at.place, moment, hour);
   at.time = moment;
 
+  const bool is_night = sun_position(*at.place, moment).elevation_deg <= 0;
   const auto needed = [&](const std::optional<double>& value, std::string_view name) {
     if (value) return *value;
-    throw InputError(text(weather.file, ":", found.line, ": the ", name, " of this hour is marked as missing; choose ",
-                          "another hour, or give direct_normal and diffuse_horizontal in the scene file"));
+    if (is_night) return 0.0;
+    throw InputError(text(weather.file, ":", found.line, ": ",
+                          found.flaw.empty() ? text("the ", name, " of this hour is missing") : found.flaw,
+                          "; choose another hour, or give direct_normal and diffuse_horizontal in the scene file"));
   };
   HourOfDaylight light;
   light.direct_normal = needed(found.direct_normal, "direct normal radiation");
@@ -256,21 +276,39 @@ std::string how_to_place_the_sun(const PlaceAndTime& at) {
               ", or \"sun\": { \"direction\": [0.3, -0.5, 0.8] }");
 }
 
-/// Illuminances [lx] of sun and sky: measured, or by Perez' efficacies where the file has none.
+/// Luminous efficacies of daylight [lm/W], with room around what is measured (90 to 150). Other illuminances are in
+/// klux, hundredths, fillers or nothing.
+constexpr double kLeastEfficacy = 30, kMostEfficacy = 250;
+
+/// Whether so many lux are no light of so many W/m2. Files round to 1 W/m2 and 100 lx.
+bool is_no_daylight(const std::optional<double>& lux, double irradiance) {
+  return lux && *lux > 0 &&
+         (*lux < kLeastEfficacy * (irradiance - 1) - 100 || *lux > kMostEfficacy * (irradiance + 1) + 100);
+}
+
+/// Illuminances [lx] of sun and sky: measured, or by Perez' efficacies where the file has none or nonsense.
 void add_illuminances(HourOfDaylight& light, const SkyMeasurement& measured, const std::string& file,
                       std::vector<std::string>& warnings) {
-  bool derived = false;
+  std::string why;
+  const auto check = [&](const std::optional<double>& lux, double irradiance, std::string_view name) {
+    if (!why.empty() || !is_no_daylight(lux, irradiance)) return;
+    why = text("its ", name, " illuminance, ", *lux, " lx for ", irradiance, " W/m2, is no daylight, which has ",
+               kLeastEfficacy, " to ", kMostEfficacy, " lm/W; the illuminances of this hour");
+  };
+  check(light.direct_normal_lux, light.direct_normal, "direct normal");
+  check(light.diffuse_horizontal_lux, light.diffuse_horizontal, "diffuse horizontal");
+  if (!why.empty()) light.direct_normal_lux = light.diffuse_horizontal_lux = std::nullopt;
   const auto complete = [&](std::optional<double>& lux, double irradiance, double efficacy) {
     // Files that hold no illuminances may say 0 for them in bright daylight.
     if (lux && (*lux > 0 || irradiance == 0)) return;
     lux = irradiance * efficacy;
-    derived = true;
+    if (why.empty() && irradiance > 0) why = "has no illuminances for this hour; they";
   };
   complete(light.direct_normal_lux, light.direct_normal, direct_efficacy(measured));
   complete(light.diffuse_horizontal_lux, light.diffuse_horizontal, diffuse_efficacy(measured));
-  if (derived && light.line) {
-    warnings.push_back(text(file, ":", *light.line, ": has no illuminances for this hour; they are derived ",
-                            "from its radiation by the efficacies of Perez (1990)"));
+  if (!why.empty() && light.line) {
+    warnings.push_back(
+        text(file, ":", *light.line, ": ", why, " are derived from its radiation by the efficacies of Perez (1990)"));
   }
 }
 
@@ -329,9 +367,11 @@ void set_general_type(int type, Sky& sky) {
 void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& direction, bool computed,
              const std::string& file_name, LightSpec& lights, std::vector<std::string>& warnings) {
   if (direction.z <= 0 && computed) {
+    const Place& place = *entries.where_and_when.place;
     warnings.push_back(text(file_name, ": at this place and time the sun stands ",
                             -std::asin(direction.z) * 180 / std::numbers::pi,
-                            " degrees below the horizon and gives no light"));
+                            " degrees below the horizon and gives no light",
+                            is_odd(place) ? "; longitude and timezone do not fit each other, which may be why" : ""));
   } else if (direction.z <= 0) {
     warnings.push_back(text(entries.sun->place("direction"),
                             " has z <= 0: the sun is not above the horizon and gives no ",
@@ -348,6 +388,7 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
                                          std::vector<std::string>& warnings) {
   SkyEntries entries = read_entries(root, file_name, channels);
   PlaceAndTime& at = entries.where_and_when;
+  if (at.place) warn_of_place(root.place("location"), *at.place, warnings);
   const std::optional<JsonObject>& object = entries.sky;
   Sky sky;
   std::optional<HourOfDaylight> hour;
@@ -358,7 +399,7 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
     constexpr Range kGround{.low = 0, .high = 1, .advice = "the ground cannot reflect more than it receives"};
     sky.ground_reflectance = object->number("ground_reflectance", kGround).value_or(sky.ground_reflectance);
     if (object->has("weather"))
-      hour = hour_of_weather(root, *object, folder, at);
+      hour = hour_of_weather(root, *object, folder, at, warnings);
     else if (sky.model == SkyModel::perez)
       hour = hour_of_keys(*object);
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 namespace clerestory {
 namespace {
@@ -99,7 +100,9 @@ SkyCondition sky_condition(const SkyMeasurement& measured) {
   const double DHI = measured.diffuse_horizontal, cube = 1.041 * Z * Z * Z;
   SkyCondition sky;
   sky.air_mass = 1 / (std::cos(Z) + 0.15 * std::pow(elevation_deg + 3.885, -1.253));
-  if (DHI > 0) sky.clearness = ((DHI + measured.direct_normal) / DHI + cube) / (1 + cube);
+  if (measured.direct_normal > 0)  // without diffuse light infinite: as clear as can be
+    sky.clearness =
+        DHI > 0 ? ((DHI + measured.direct_normal) / DHI + cube) / (1 + cube) : std::numeric_limits<double>::infinity();
   sky.brightness = std::clamp(DHI * sky.air_mass / extraterrestrial(measured.day_of_year), 0.01, 0.6);
   while (sky.bin < 7 && sky.clearness >= kBinEnds[static_cast<std::size_t>(sky.bin)]) ++sky.bin;
   return sky;

@@ -25,8 +25,8 @@ struct SkyCondition {
 };
 
 /// Source: Perez, Ineichen, Seals, Michalsky & Stewart, "Modeling daylight availability and irradiance components from
-/// direct and global irradiance", 1990; solar constant 1367 W/m2, distance from the sun by Spencer 1971. A dark sky
-/// (no diffuse light) counts as overcast.
+/// direct and global irradiance", 1990; solar constant 1367 W/m2, distance from the sun by Spencer 1971. Under a sun
+/// without diffuse light clearness is infinite; where neither shines it is 1, overcast.
 SkyCondition sky_condition(const SkyMeasurement& measured);
 
 /// Distribution of luminance. Source: Perez, Seals & Michalsky, "All-weather model for sky luminance distribution",

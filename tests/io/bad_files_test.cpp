@@ -38,6 +38,23 @@ TEST(BadFiles, GarbageIsRefusedWithOneLine) {
   }
 }
 
+TEST(BadFiles, Utf16IsNamedWithTheWayOut) {
+  const TempFolder folder;
+  for (const std::string_view extension : kExtensions) {
+    if (extension == "ifc" || extension == "glb") continue;  // another reader's, and no text
+    for (const bool little_endian : {true, false}) {
+      for (const bool marked : {true, false}) {
+        std::string bytes;
+        for (const char c : std::string("solid text of any kind\nv 0 0 0\n"))
+          bytes += little_endian ? std::string{c, '\0'} : std::string{'\0', c};
+        if (marked) bytes = (little_endian ? "\xff\xfe" : "\xfe\xff") + bytes;
+        const std::string name = text("a.", extension);
+        EXPECT_EQ(refusal(folder.write(name, bytes)), name + ": is UTF-16 text; save it as UTF-8");
+      }
+    }
+  }
+}
+
 TEST(BadFiles, UnknownExtensionsListTheKnownOnes) {
   const TempFolder folder;
   EXPECT_EQ(refusal(folder.write("a.txt", "x")),

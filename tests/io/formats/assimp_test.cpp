@@ -166,6 +166,13 @@ TEST_F(ThroughAssimp, FbxSaysItsUnitAndAxes) {
   EXPECT_LT(length(extent(read_scene(folder_.write("a.fbx", fbx))).size() - Vec3{1.5, 0, 1}), 1e-5);
 }
 
+TEST_F(ThroughAssimp, TheMarkOfUtf8IsSkipped) {
+  const std::string dae = collada("<up_axis>Z_UP</up_axis>", "0 0 1 1 0 1 1 2 1 0 2 1");
+  EXPECT_LT(length(extent(read_scene(folder_.write("a.dae", "\xef\xbb\xbf" + dae))).upper - Vec3{1, 2, 1}), 1e-6);
+  const std::string fbx = read_text(std::filesystem::path(CLERESTORY_SOURCE_DIR) / "tests/fuzz/corpus/fbx/sheet.fbx");
+  EXPECT_LT(length(extent(read_scene(folder_.write("a.fbx", "\xef\xbb\xbf" + fbx))).size() - Vec3{150, 100, 0}), 1e-3);
+}
+
 TEST_F(ThroughAssimp, DamagedFilesAreRefusedAndCrashesStayInTheChild) {
   const std::string block = ifc_block("#5=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);", "");
   for (const std::string_view name : {"a.ifc", "a.dae", "a.fbx"}) {

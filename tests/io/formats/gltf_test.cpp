@@ -108,7 +108,7 @@ TEST_F(Gltf, EmissionIsALuminance) {
   // 1790 cd/m2 is 10 W/(m2 sr) at 179 lm/W, and pi times that leaves a diffuse surface.
   EXPECT_NEAR(material(scene, "lamp").exitance[0], 10 * kPi, 1e-12);
   EXPECT_NEAR(material(scene, "lamp").exitance[1], 5 * kPi, 1e-12);
-  EXPECT_EQ(material(scene, "lamp").reflectance, Spectrum(0.99));  // base colour is white unless it is given
+  EXPECT_EQ(material(scene, "lamp").reflectance, Spectrum(0.5));  // glTF's default is white, which nothing is
 }
 
 TEST_F(Gltf, LightsStandWhereTheirNodesAreAndOneLightMayStandTwice) {

@@ -96,6 +96,27 @@ TEST_F(Obj, AMissingMaterialFileIsAWarning) {
   EXPECT_NE(all_warnings(scene).find("gone.mtl' is missing"), std::string::npos);
 }
 
+TEST_F(Obj, MaterialFilesNamedOnWindowsAreFound) {
+  std::filesystem::create_directory(folder_ / "Mats");
+  folder_.write("Mats/Paint.mtl", "newmtl x\nKd 0.3\n");
+  folder_.write("my house.mtl", "newmtl x\nKd 0.3\n");
+  folder_.write("a.mtl", "newmtl y\nKd 0.3\n");
+  for (const char* named : {"Mats\\Paint.mtl", "mats/paint.MTL", "MY HOUSE.MTL", "\"my house.mtl\"", "'my house.mtl'",
+                            "C:\\Users\\me\\My Models\\my house.mtl", "/somewhere/else/my house.mtl",
+                            "a.mtl \"my house.mtl\"", "a.mtl mats\\paint.mtl\t", ".\\Mats\\Paint.mtl"}) {
+    const Scene scene = read("mtllib " + std::string(named) + "\r\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(material(scene, "x").reflectance, Spectrum(0.3)) << named;
+    EXPECT_EQ(all_warnings(scene), "") << named;
+  }
+}
+
+TEST_F(Obj, LinesMayEndInCrAloneAndTheFileBeginWithAMark) {
+  folder_.write("a.mtl", "\xef\xbb\xbfnewmtl x\rKd 0.3\r");
+  const Scene scene = read("\xef\xbb\xbfmtllib a.mtl\rusemtl x\rv 0 0 0\rv 1 0 \\\r0\rv 0 1 0\rf 1 2 3\r");
+  EXPECT_EQ(material(scene, "x").reflectance, Spectrum(0.3));
+  EXPECT_EQ(scene.polygons.face_count(), 1u);
+}
+
 TEST_F(Obj, LinesPointsAndUnusedVerticesAreLeftOut) {
   const Scene scene = read("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\np 1\nf 2 3 4\n");
   EXPECT_EQ(scene.polygons.vertices.size(), 3u);

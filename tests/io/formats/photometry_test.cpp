@@ -222,6 +222,34 @@ TEST(Photometry, ALampThatGivesMoreThanItGetsIsReported) {
             "lamp.ies: its intensities add up to 628.3 lm, more than its lamps give, 500 lm; the intensities count");
 }
 
+TEST(Photometry, AMetersOffsetIsZeroAndTextBehindTheDataIsLeftOutBothWithAWarning) {
+  const std::string head = "1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n";
+  std::vector<std::string> said;
+  EXPECT_EQ(parse(ies(head + "100 40 -0.1\n"), &said).candela, (std::vector<float>{100, 40, 0}));
+  EXPECT_EQ(said, std::vector<std::string>{"lamp.ies: 1 intensity is negative, down to -0.1 cd; 0 is taken"});
+  EXPECT_EQ(parse(ies(head + "100 -0 -4\n"), &said).candela, (std::vector<float>{100, 0, 0}));
+  EXPECT_EQ(refusal(ies(head + "100\n40 -6\n")), "lamp.ies:8: candela at V = 90, H = 0 = -6 is negative");
+  EXPECT_EQ(refusal(ies(head + "-1 -1 -1\n")), "lamp.ies:7: candela at V = 0, H = 0 = -1 is negative");
+  for (const char* text : {"END\n", "[OTHER] measured in 2019 at 25 C\n", "# 3 4 5\n"}) {
+    EXPECT_EQ(parse(ies(kEvenly + text), &said).candela, parse(ies(kEvenly)).candela);
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_TRUE(said[0].starts_with("lamp.ies:8: the text behind the data, '")) << said[0];
+  }
+  EXPECT_EQ(refusal(ies(kEvenly + "5 END\n")),
+            "lamp.ies:8: 1 more number than 3 x 1 candelas; the counts of angles do not fit the data");
+
+  std::string ldt = "maker\n1\n1\n1\n0\n3\n45\nreport\nname\nnumber\nfile\ndate\n100\n0\n0\n100\n0\n0\n0\n0\n0\n";
+  ldt += "100\n100\n1\n0\n1\n1\nLED\n1000\n4000\n80\n30\n";
+  for (int i = 0; i < 10; ++i) ldt += "0.5\n";
+  ldt += "0\n0\n45\n90\n300\n100\n";
+  said.clear();
+  EXPECT_EQ(parse_ldt(ldt + "-0,1\nbye 7\n", "lamp.ldt", said).candela, (std::vector<float>{300, 100, 0}));
+  ASSERT_GE(said.size(), 2u);
+  EXPECT_EQ(said[0], "lamp.ldt: 1 intensity is negative, down to -0.1 cd; 0 is taken");
+  EXPECT_EQ(said[1], "lamp.ldt:50: the text behind the data, 'bye ...', is left out");
+  for (const char* wrong : {"-20\n", "1\n2\n"}) EXPECT_THROW(parse_ldt(ldt + wrong, "lamp.ldt", said), InputError);
+}
+
 TEST(Photometry, RefusalsNameLineValueAndWhatIsAllowed) {
   EXPECT_EQ(refusal(ies("1 1000 1 3 1 4 2 0 0 0\n")),
             "lamp.ies:3: photometric type = 4; 1 (C), 2 (B) and 3 (A) are known");

@@ -124,5 +124,58 @@ TEST_F(PolygonFiles, OffKeepsPolygonsPastColoursAndRemarks) {
             "a.off:1: starts with 'hello'; an .off file in text form starts with OFF, COFF or NOFF");
 }
 
+/// One triangle with corners (0, 0, 0), (2, 0, 0) and (0, 3, 0).
+std::string binary_stl(const std::string& header) {
+  std::string bytes = header + std::string(80 - header.size(), ' ');
+  const std::uint32_t count = 1;
+  const float numbers[12] = {0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0};
+  bytes.append(reinterpret_cast<const char*>(&count), 4);
+  bytes.append(reinterpret_cast<const char*>(numbers), 48);
+  return bytes + std::string(2, '\0');
+}
+
+/// The same as PLY, its lines ended by `end`; the first coordinate begins with the byte LF.
+std::string binary_ply(const std::string& end) {
+  std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+  for (std::size_t at = header.find('\n'); at != header.npos; at = header.find('\n', at + end.size()))
+    header.replace(at, 1, end);
+  float points[9] = {0, 0, 0, 2, 0, 0, 0, 3, 0};
+  reinterpret_cast<char*>(points)[0] = '\n';  // 1.4e-44
+  header.append(reinterpret_cast<const char*>(points), sizeof points);
+  return header + std::string("\3\0\1\2", 4);
+}
+
+TEST_F(PolygonFiles, TheMarkOfUtf8IsSkippedAlsoBeforeABinaryBody) {
+  const std::string mark = "\xef\xbb\xbf";
+  const std::string stl =
+      "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 0 3 0\n"
+      "endloop\nendfacet\nendsolid x\n";
+  for (const auto& [name, content] : {std::pair{"a.stl", stl},
+                                      {"a.stl", binary_stl("exported")},
+                                      {"a.ply", binary_ply("\n")},
+                                      {"a.ply", std::string(kPlyPentagon)},
+                                      {"a.off", std::string("OFF\n3 1 0\n0 0 0\n2 0 0\n0 3 0\n3 0 1 2\n")}}) {
+    EXPECT_EQ(extent(read(name, mark + content)).upper, extent(read(name, content)).upper) << name;
+  }
+  // A binary header may itself begin so.
+  EXPECT_EQ(extent(read("a.stl", binary_stl(mark + "exported"))).upper, (Vec3{2, 3, 0}));
+}
+
+TEST_F(PolygonFiles, LinesMayEndInCrAlone) {
+  for (const char* end : {"\n", "\r\n", "\r"})
+    EXPECT_FLOAT_EQ(static_cast<float>(extent(read("a.ply", binary_ply(end))).upper.y), 3) << end;
+  const auto with_cr = [](std::string content) {
+    std::replace(content.begin(), content.end(), '\n', '\r');
+    return content;
+  };
+  EXPECT_EQ(read("a.ply", with_cr(std::string(kPlyPentagon))).polygons.corner.size(), 5u);
+  EXPECT_EQ(read("a.off", with_cr("OFF # x\n3 1 0\n0 0 0\n2 0 0\n0 3 0\n3 0 1 2\n")).polygons.face_count(), 1u);
+  const Scene stl = read("a.stl", with_cr("solid left\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\n"
+                                          "vertex 0 3 0\nendloop\nendfacet\nendsolid left\n"));
+  EXPECT_EQ(stl.surfaces, std::vector<std::string>{"left"});
+}
+
 }  // namespace
 }  // namespace clerestory

@@ -4,10 +4,9 @@
 #include <numbers>
 #include <vector>
 
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
-#include "io/formats/run_apart.h"
+#include "tests/io/paint_image.h"
 #include "tests/io/reading.h"
 
 namespace clerestory {
@@ -17,20 +16,9 @@ class SkyImageFile : public ::testing::Test {
  protected:
   SkyImageFile() { folder_.write("room.obj", kRoomObj); }
 
-  /// Writes a picture of one grey or three channels; the extension says the format. In a child, as the reader's child
-  /// must not inherit the threads of OpenEXR.
+  /// A picture of one grey or three channels; the extension says the format.
   void paint(const std::string& name, int width, int height, int channels, const std::vector<float>& pixels) {
-    const std::string file = folder_ / name;
-    const std::string done = run_apart(
-        [&] {
-          const auto out = OIIO::ImageOutput::create(file);
-          const bool written = out &&
-                               out->open(file, OIIO::ImageSpec(width, height, channels, OIIO::TypeDesc::FLOAT)) &&
-                               out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && out->close();
-          return std::string(written ? "written" : "failed");
-        },
-        {});
-    ASSERT_EQ(done, "written");
+    ASSERT_TRUE(paint_image(folder_ / name, width, height, channels, pixels));
   }
   std::string with(const std::string& sky) {
     return folder_.write("s.json", R"({ "geometry": [{ "file": "room.obj" }], "sky": )" + sky + " }");

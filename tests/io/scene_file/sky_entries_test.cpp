@@ -189,6 +189,99 @@ TEST_F(SkyEntries, MissingIlluminancesAreDerivedAndSaidSo) {
   EXPECT_NEAR(179 * scene.lights.sky->horizontal_irradiance[0], 100 * diffuse_efficacy(measured), 1e-6);
 }
 
+TEST_F(SkyEntries, IlluminancesThatAreNoDaylightAreDerivedAsIfMissing) {
+  // 600 and 120 W/m2 in hour 13: klux, hundredths, fillers, the sun's light for the sky's.
+  const auto lines = [](const std::string& direct, const std::string& diffuse) {
+    std::vector<std::string> all = weather_lines();
+    std::string& row = all[20];
+    row.replace(row.find("62000,16000"), 11, direct + "," + diffuse);
+    return joined(all);
+  };
+  const auto light = [&](const std::string& direct, const std::string& diffuse) {
+    folder_.write("city.epw", lines(direct, diffuse));
+    return read_with(R"("sky": { "weather": "city.epw" }, "time": "2003-10-17T13:00")");
+  };
+  const Scene missing = light("999999", "999999");
+  for (const auto& [direct, diffuse] :
+       {std::pair{"62", "16"}, {"620", "160"}, {"9999", "9999."}, {"99999", "99999"}, {"62000", "62000"}, {"", ""}}) {
+    const Scene scene = light(direct, diffuse);
+    EXPECT_EQ(scene.lights.sky->horizontal_irradiance, missing.lights.sky->horizontal_irradiance) << direct;
+    EXPECT_EQ(scene.lights.suns.at(0).normal_irradiance, missing.lights.suns.at(0).normal_irradiance) << direct;
+    EXPECT_NE(all_warnings(scene).find("derived from its radiation by the efficacies of Perez"), std::string::npos);
+  }
+  EXPECT_EQ(all_warnings(light("62", "16")).substr(0, 170),
+            "city.epw:21: its direct normal illuminance, 62 lx for 600 W/m2, is no daylight, which has 30 to 250 lm/W; "
+            "the illuminances of this hour are derived from its radiation by ");
+  // What the instruments round to is no reason to doubt them.
+  EXPECT_DOUBLE_EQ(179 * light("62000", "26000").lights.sky->horizontal_irradiance[0], 26000);
+}
+
+TEST_F(SkyEntries, ASunWithoutDiffuseLightHasTheEfficacyOfTheClearestSky) {
+  // Perez et al. 1990, table 4, clearest bin: 101.18 + 1.58 W - 1.10 exp(5.73 Z - 5) - 8.29 Delta, Delta at its least.
+  const double Z = 40 * kPi / 180;
+  const double exact = 101.18 + 1.58 * 2 - 1.10 * std::exp(5.73 * Z - 5) - 8.29 * 0.01;
+  EXPECT_NEAR(direct_efficacy({600, 0, Z, std::nullopt, 2}), exact, 1e-9);
+  EXPECT_NEAR(direct_efficacy({600, 1e-9, Z, std::nullopt, 2}), exact, 1e-9);
+  const Scene scene = read_with(R"("sky": { "model": "perez", "direct_normal": 600, "diffuse_horizontal": 0 },
+                                    "sun": { "direction": [0, 0.6427876096865393, 0.766044443118978] })");
+  EXPECT_NEAR(179 * scene.lights.suns.at(0).normal_irradiance[0], 600 * exact, 1e-6);
+  EXPECT_TRUE(scene.lights.sky->horizontal_irradiance.is_black());
+}
+
+TEST_F(SkyEntries, OneBadHourIsNoReasonAgainstAnother) {
+  std::vector<std::string> lines = weather_lines();
+  const auto spoil = [&](int hour, const std::string& radiation) {
+    std::string& row = lines[static_cast<std::size_t>(7 + hour)];
+    const std::size_t begin = row.find(",300,") + 5;
+    row.replace(begin, row.find(",200,") - begin, "400," + radiation + ",0,0,0,9999");
+  };
+  spoil(8, "broken,100"), spoil(9, "-9999,-9999"), spoil(10, ","), spoil(2, ","), spoil(1, "0,-1.3"),
+      spoil(11, "500,7000");
+  lines[19] = "2003,10,17,12,0,?9?9,11.0";
+  folder_.write("city.epw", joined(lines));
+  const auto at = [](const char* hour) {
+    return R"("sky": { "weather": "city.epw" }, "time": "2003-10-17T)" + std::string(hour) + ":00\"";
+  };
+  EXPECT_DOUBLE_EQ(179 * read_with(at("13")).lights.sky->horizontal_irradiance[0], 16000);
+  EXPECT_TRUE(read_with(at("01")).lights.sky->horizontal_irradiance.is_black());
+  EXPECT_TRUE(read_with(at("02")).lights.sky->horizontal_irradiance.is_black()) << "at night nothing is missed";
+  const std::string advice = "; choose another hour, or give direct_normal and diffuse_horizontal in the scene file";
+  EXPECT_EQ(refusal_with(at("08")), "city.epw:16: the direct normal radiation = 'broken' is not a number" + advice);
+  EXPECT_EQ(refusal_with(at("09")), "city.epw:17: the direct normal radiation of this hour is missing" + advice);
+  EXPECT_EQ(refusal_with(at("10")), "city.epw:18: the direct normal radiation of this hour is missing" + advice);
+  EXPECT_EQ(refusal_with(at("11")),
+            "city.epw:19: the diffuse horizontal radiation = 7000 is outside [0, 1500] W/m2" + advice);
+  EXPECT_EQ(refusal_with(at("12")),
+            "city.epw:20: has 7 values; an hour has 35. The file is damaged or cut short" + advice);
+}
+
+TEST_F(SkyEntries, ALongitudeThatDoesNotFitItsTimezoneIsWarnedOf) {
+  const auto at = [](double longitude, double timezone) {
+    return text(R"("sun": { "normal_illuminance": 1 }, "time": "2003-06-21T12:00", "location": { "latitude": 42,
+                "longitude": )",
+                longitude, R"(, "timezone": )", timezone, " }");
+  };
+  const std::string odd = "hours of the sun apart; longitude counts east positive";
+  EXPECT_NE(
+      all_warnings(read_with(at(87.92, -6))).find("s.json: location: longitude 87.92 and timezone -6 are 11.9 " + odd),
+      std::string::npos);
+  EXPECT_NE(all_warnings(read_with(at(87.92, -6)))
+                .find("below the horizon and gives no light; longitude and timezone do not fit each other"),
+            std::string::npos);
+  EXPECT_NE(all_warnings(read_with(at(-151.21, 10))).find(odd), std::string::npos);  // Sydney, on the other side
+  EXPECT_EQ(all_warnings(read_with(at(-87.92, -6))).find("longitude"), std::string::npos);
+  EXPECT_EQ(all_warnings(read_with(at(-157.4, 14))).find("longitude"),
+            std::string::npos);  // Kiritimati, across the date line
+  EXPECT_EQ(all_warnings(read_with(at(75.99, 8))).find("longitude"),
+            std::string::npos);  // Kashgar by the clock of Beijing
+  std::vector<std::string> lines = weather_lines();
+  lines[0].replace(lines[0].find("-105"), 4, "105");
+  folder_.write("city.epw", joined(lines));
+  EXPECT_NE(all_warnings(read_with(R"("sky": { "weather": "city.epw" }, "time": "2003-10-17T13:00")"))
+                .find("city.epw: longitude 105.1786 and timezone -7 are 10 hours"),
+            std::string::npos);
+}
+
 TEST_F(SkyEntries, WeatherScalesTheOtherSkiesToo) {
   const Scene scene = read_with(R"("sky": { "model": "cie-overcast", "weather": "city.epw" }, "sun": false,
                                    "time": "2003-10-17T13:00")");
@@ -302,7 +395,7 @@ TEST_F(SkyEntries, TwoKeysForOneThingAreRefused) {
 
 TEST_F(SkyEntries, AnHourMarkedAsMissingIsRefusedWithItsLine) {
   EXPECT_EQ(refusal_with(R"("sky": { "weather": "city.epw" }, "time": "2003-10-17T15:00")"),
-            "city.epw:23: the direct normal radiation of this hour is marked as missing; choose another hour, or give "
+            "city.epw:23: the direct normal radiation of this hour is missing; choose another hour, or give "
             "direct_normal and diffuse_horizontal in the scene file");
 }
 

@@ -29,7 +29,8 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
   Scene scene;
   scene.file = file.string();
   if (options.sky) scene.lights.sky = sky_of_option(*options.sky);
-  place_model(scene, read_model(file), file, placement, [](Material&) { return false; });
+  ModelsInScene none;
+  place_model(scene, none, read_model(file), file, placement, [](Material&) { return false; });
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "io/formats/model.h"
 #include "io/input_file.h"
@@ -166,8 +167,10 @@ class ObjReader {
     for (std::string_view word = next_word(names); !word.empty(); word = next_word(names)) read_library(folder / word);
   }
 
+  /// Once, however often and by whatever path it is named.
   void read_library(const std::filesystem::path& library) {
     std::error_code error;
+    if (!libraries_.insert(std::filesystem::weakly_canonical(library, error).string()).second) return;
     if (!std::filesystem::is_regular_file(library, error)) {
       model_.warnings.push_back(text("material file '", quotable(library.string()), "' is missing"));
       return;
@@ -199,6 +202,7 @@ class ObjReader {
   std::unordered_map<std::string, SurfaceId> surface_by_name_;
   std::unordered_map<std::string, MaterialId> material_by_name_;
   std::unordered_map<std::string, ModelMaterial> described_;
+  std::unordered_set<std::string> libraries_;  // that were read, or are missing
   SurfaceId surface_;
   MaterialId material_;
   std::size_t line_ = 0, short_faces_ = 0, free_forms_ = 0;

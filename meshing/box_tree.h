@@ -32,10 +32,17 @@ class BoxTree {
     build(0, static_cast<std::uint32_t>(n));
   }
 
+  Box box(std::uint32_t i) const { return box_of_(i); }
+
   /// Calls found(index) for every box for which touches(box) holds; touches must hold for a box that contains such a
   /// box.
   template <class Touches, class Found>
   void visit_if(const Touches& touches, const Found& found) const {
+    visit_if(touches, found, [](std::size_t) { return true; });
+  }
+  /// Passes over the nodes that are not open, and all below them.
+  template <class Touches, class Found, class Open>
+  void visit_if(const Touches& touches, const Found& found, const Open& is_open) const {
     if (nodes_.empty()) return;
     std::array<std::uint32_t, 64> stack;
     std::size_t depth = 0;
@@ -43,7 +50,7 @@ class BoxTree {
     while (depth > 0) {
       const std::uint32_t index = stack[--depth];
       const Node& node = nodes_[index];
-      if (!touches(node.box())) continue;
+      if (!is_open(index) || !touches(node.box())) continue;
       if (node.right == 0) {
         for (std::uint32_t k = node.begin; k < node.end; ++k)
           if (touches(box_of_(order_[k]))) found(order_[k]);
@@ -56,6 +63,32 @@ class BoxTree {
   /// Numbers of the boxes so that neighbours in space mostly follow each other: queries in this order find in the cache
   /// what the last one left there.
   const std::vector<std::uint32_t>& order() const { return order_; }
+
+  /// For each node what its boxes make together: value_of(number) of each, joined two by two.
+  template <class ValueOf, class Join>
+  auto by_node(const ValueOf& value_of, const Join& join) const {
+    std::vector<decltype(value_of(std::uint32_t{}))> values(nodes_.size());
+    for (std::size_t n = nodes_.size(); n-- > 0;) {
+      const Node& node = nodes_[n];
+      if (node.right == 0) {
+        values[n] = value_of(order_[node.begin]);
+        for (std::uint32_t k = node.begin + 1; k < node.end; ++k) values[n] = join(values[n], value_of(order_[k]));
+      } else {
+        values[n] = join(values[n + 1], values[node.right]);
+      }
+    }
+    return values;
+  }
+  /// Calls visit(node) for the nodes that hold the box at a place in order().
+  template <class Visit>
+  void visit_nodes_of(std::uint32_t place, const Visit& visit) const {
+    for (std::uint32_t n = 0;;) {
+      visit(n);
+      const Node& node = nodes_[n];
+      if (node.right == 0) return;
+      n = place < nodes_[node.right].begin ? n + 1 : node.right;
+    }
+  }
 
   template <class Found>
   void visit(const Box& near, const Found& found) const {

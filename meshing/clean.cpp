@@ -104,6 +104,7 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
   }
 
   FaceComplex complex;
+  complex.file = scene.file;
   complex.allowed = allowed;
   if (extent.lower.x <= extent.upper.x) {
     report.lower = extent.lower;
@@ -134,7 +135,9 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
 
   Welder weld(complex);
   std::vector<std::uint32_t> welded(soup.vertices.size(), PointIndex::kNone);
-  std::size_t used = 0;
+  // A polygon of n corners may cross itself n2 / 2 times, and each place becomes a vertex.
+  const std::size_t most_crossings = 50'000 + soup.corner.size() / 4;
+  std::size_t used = 0, crossings = 0;
   std::vector<Vec3> polygon;
   std::vector<std::uint32_t> ids;
   for (std::size_t f = 0; f < face_count && has_size; ++f) {
@@ -151,7 +154,14 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
     }
     while (ids.size() > 1 && ids.back() == ids.front()) ids.pop_back();
     for (const std::uint32_t v : ids) polygon.push_back(complex.vertices[v]);
-    const PolygonTriangles pieces = triangulate_polygon(polygon);
+    const PolygonTriangles pieces = triangulate_polygon(polygon, most_crossings - crossings);
+    crossings += pieces.crossings.size();
+    if (pieces.gave_up)
+      throw InputError(scene.file + ": face " + std::to_string(f) + " (from 0), of '" +
+                       scene.surfaces[soup.surface[f]] + "', with " + std::to_string(polygon.size()) +
+                       " corners crosses itself; with it polygons of the model cross themselves in more than " +
+                       std::to_string(most_crossings) +
+                       " places, the most for its size. Draw it as polygons that do not, or as triangles.");
     for (const Vec3& p : pieces.crossings) ids.push_back(weld(p, allowed.contact));
     bool any = false;
     for (const auto& t : pieces.triangles) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <deque>
 #include <map>
 #include <numeric>
@@ -101,15 +102,26 @@ std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector
     return box.grown(complex.allowed.contact / 2);
   };
   const BoxTree tree(count, box_of);
+  constexpr std::uint32_t kSeveral = 0xffffffff;
+  const auto one_group = tree.by_node([&](std::uint32_t f) { return group_of[f]; },
+                                      [](std::uint32_t g, std::uint32_t h) { return g == h ? g : kSeveral; });
+  const CrowdLimit pairs{"pairs of faces of different planes touch by their boxes", 50'000'000 + 200 * count};
+  const CrowdLimit contacts{"pairs of faces cross or touch", 1'000'000 + 10 * count};
+  std::atomic<std::size_t> all_met = 0, all_found = 0;
   constexpr std::size_t kGrain = 256;
   std::vector<std::vector<Contact>> found((count + kGrain - 1) / kGrain);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk)
       for (std::size_t k = chunk * kGrain; k < std::min(count, (chunk + 1) * kGrain); ++k) {
+        if (all_met > pairs.most || all_found > contacts.most) return;
         const std::uint32_t f = tree.order()[k];
         const auto& cf = complex.faces[f].corner;
-        tree.visit(box_of(f), [&](std::uint32_t g) {
+        const std::size_t found_before = found[chunk].size();
+        std::size_t met = 0;
+        const Box around = box_of(f);
+        const auto meet = [&](std::uint32_t g) {
           if (g <= f || group_of[g] == group_of[f]) return;
+          ++met;
           const auto& cg = complex.faces[g].corner;
           int shared = 0;
           Vec3 common;
@@ -122,9 +134,15 @@ std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector
           const auto c = contact(complex, f, g, groups[group_of[f]].plane, groups[group_of[g]].plane);
           // Most that touch do so in a common corner, which is drawn too.
           if (c && !(shared == 1 && c->end[0] == common && c->end[1] == common)) found[chunk].push_back(*c);
-        });
+        };
+        tree.visit_if([&](const Box& b) { return b.touches(around); }, meet,
+                      [&](std::size_t node) { return one_group[node] != group_of[f]; });
+        all_met += met;
+        all_found += found[chunk].size() - found_before;
       }
   });
+  pairs.check(all_met, complex);
+  contacts.check(all_found, complex);
   std::vector<Contact> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   std::sort(all.begin(), all.end(), [](const Contact& x, const Contact& y) {
@@ -184,6 +202,8 @@ class LineSplitter {
     for (const Ends& e : ends) ++begin_at[e[0] + 1];
     std::partial_sum(begin_at.begin(), begin_at.end(), begin_at.begin());
     std::vector<Split> splits;
+    const CrowdLimit limit{"places where a corner lies on an edge", 3'000'000 + 10 * ends.size()};
+    std::atomic<std::size_t> stops = 0;
     for (const Layer& layer : layers_) {
       const auto& order = layer.tree.order();
       std::vector<std::vector<Split>> found((order.size() + kGrain - 1) / kGrain);
@@ -192,11 +212,16 @@ class LineSplitter {
           for (std::size_t k = chunk * kGrain; k < std::min(order.size(), (chunk + 1) * kGrain); ++k) {
             const std::uint32_t v = layer.vertex[order[k]];
             const auto fan = std::span(ends).subspan(begin_at[v], begin_at[v + 1] - begin_at[v]);
-            if (!fan.empty()) split_fan(fan, before, forced, found[chunk]);
+            // Each node of the tree is asked by all lines of a fan: a wide one goes in parts.
+            const std::size_t splits_before = found[chunk].size();
+            for (std::size_t first = 0; first < fan.size() && stops <= limit.most; first += kFan)
+              split_fan(fan.subspan(first, std::min(kFan, fan.size() - first)), before, forced, found[chunk]);
+            for (std::size_t s = splits_before; s < found[chunk].size(); ++s) stops += found[chunk][s].stops.size();
           }
       });
       for (auto& some : found) splits.insert(splits.end(), some.begin(), some.end());
     }
+    limit.check(stops, complex_);
     std::sort(splits.begin(), splits.end(), [](const Split& x, const Split& y) { return x.line < y.line; });
     const auto is_split = [&](const Ends& e) {
       const auto at = std::lower_bound(splits.begin(), splits.end(), e,
@@ -228,7 +253,7 @@ class LineSplitter {
   }
 
  private:
-  static constexpr std::size_t kGrain = 1024;
+  static constexpr std::size_t kGrain = 1024, kFan = 64;
   struct Split {
     Ends line;
     Stops stops;
@@ -322,8 +347,9 @@ struct Crossing {
   double tolerance;
 };
 
-/// Where lines of one group cross away from their ends.
-std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, std::span<const Line> lines) {
+/// Where lines of one group cross away from their ends; no more than `most`, and one.
+std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, std::span<const Line> lines,
+                                std::size_t most) {
   std::vector<Crossing> found;
   std::vector<std::array<Point2, 2>> flat;
   std::vector<Box> boxes;
@@ -335,7 +361,7 @@ std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, 
   }
   const auto test = [&](std::size_t i, std::size_t j) {
     const Line &li = lines[i], &lj = lines[j];
-    if (li.a == lj.a || li.a == lj.b || li.b == lj.a || li.b == lj.b) return;
+    if (li.a == lj.a || li.a == lj.b || li.b == lj.a || li.b == lj.b || found.size() > most) return;
     const auto& [p, q] = flat[i];
     const auto& [r, s] = flat[j];
     const double dx = q.x - p.x, dy = q.y - p.y, ex = s.x - r.x, ey = s.y - r.y;
@@ -358,7 +384,7 @@ std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, 
     return found;
   }
   const BoxTree tree(lines.size(), [&](std::uint32_t i) -> const Box& { return boxes[i]; });
-  for (std::size_t i = 0; i < lines.size(); ++i)
+  for (std::size_t i = 0; i < lines.size() && found.size() <= most; ++i)
     tree.visit_if(
         [&](const Box& b) {
           return b.touches(boxes[i]) &&
@@ -376,12 +402,17 @@ std::vector<std::vector<Crossing>> crossings_by_group(const FaceComplex& complex
   for (std::size_t k = lines.size(); k-- > 0;) begin_of[lines[k].group] = k;
   for (std::size_t g = groups.size(); g-- > 0;) begin_of[g] = std::min(begin_of[g], begin_of[g + 1]);
   std::vector<std::vector<Crossing>> found(groups.size());
+  const CrowdLimit limit{"places where lines of one plane cross", 300'000 + 5 * lines.size()};
+  std::atomic<std::size_t> count = 0;
   parallel_for(groups.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin; g < end; ++g)
-      if (begin_of[g + 1] - begin_of[g] > 3)
-        found[g] =
-            crossings(complex, groups[g].plane, std::span(lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]));
+    for (std::size_t g = begin; g < end && count <= limit.most; ++g)
+      if (begin_of[g + 1] - begin_of[g] > 3) {
+        found[g] = crossings(complex, groups[g].plane,
+                             std::span(lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]), limit.most);
+        count += found[g].size();
+      }
   });
+  limit.check(count, complex);
   return found;
 }
 

@@ -1,6 +1,7 @@
 #include "meshing/plane_groups.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <span>
 
@@ -69,45 +70,93 @@ Plane fit(const Plane& about, const FaceComplex& complex, const std::vector<Face
   return {centre + about.n * (z0 / (3 * weight)), frame.t, frame.b, frame.n};
 }
 
-/// For each face those whose boxes touch its own and that may lie in one plane with it.
+/// For each face those whose boxes touch its own and that may lie in one plane with it. Of a face that touches very
+/// many only those are found that no group has taken yet, when they are asked for: many faces on each other are then
+/// met once and not once by each of them.
 class Neighbours {
  public:
-  Neighbours(const FaceComplex& complex, const std::vector<FaceShape>& shapes) : place_(shapes.size()) {
+  Neighbours(const FaceComplex& complex, const std::vector<FaceShape>& shapes)
+      : complex_(complex), shapes_(shapes), tree_(shapes.size(), BoxOfFace{&complex, &shapes}), place_(shapes.size()) {
     const std::size_t count = shapes.size();
-    const auto box_of = [&](std::uint32_t f) {
-      Box box;
-      for (const std::uint32_t v : complex.faces[f].corner) box.add(complex.vertices[v]);
-      return box.grown(std::min(complex.allowed.contact, complex.allowed.local_share * shapes[f].longest));
-    };
-    const BoxTree tree(count, box_of);
     found_.resize((count + kGrain - 1) / kGrain);
     parallel_for(found_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t chunk = begin; chunk < end; ++chunk)
         for (std::size_t k = chunk * kGrain; k < std::min(count, (chunk + 1) * kGrain); ++k) {
-          const std::uint32_t f = tree.order()[k];
-          const auto first = static_cast<std::uint32_t>(found_[chunk].size());
-          const double slack = normal_slack(complex, shapes[f]);
-          tree.visit(box_of(f), [&](std::uint32_t g) {
-            if (g != f && length(cross(shapes[f].normal, shapes[g].normal)) <= slack + normal_slack(complex, shapes[g]))
-              found_[chunk].push_back(g);
-          });
-          std::sort(found_[chunk].begin() + first, found_[chunk].end());
+          const std::uint32_t f = tree_.order()[k];
+          auto& found = found_[chunk];
+          const auto first = static_cast<std::uint32_t>(found.size());
+          const Box around = tree_.box(f);
+          std::size_t met = 0;
+          tree_.visit_if([&](const Box& b) { return met <= kMany && b.touches(around); },
+                         [&](std::uint32_t g) {
+                           ++met;
+                           if (may_share_plane(f, g)) found.push_back(g);
+                         });
+          if (met > kMany) found.resize(first);
+          std::sort(found.begin() + first, found.end());
           place_[f] = {static_cast<std::uint32_t>(chunk), first,
-                       static_cast<std::uint32_t>(found_[chunk].size() - first)};
+                       met > kMany ? kCrowded : static_cast<std::uint32_t>(found.size() - first)};
         }
     });
+    if (std::ranges::none_of(place_, [](const Place& p) { return p.count == kCrowded; })) return;
+    free_ = tree_.by_node([](std::uint32_t) { return std::uint32_t{1}; }, std::plus<>());
+    in_order_.resize(count);
+    for (std::uint32_t k = 0; k < count; ++k) in_order_[tree_.order()[k]] = k;
   }
-  std::span<const std::uint32_t> of(std::uint32_t f) const {
-    return std::span(found_[place_[f].chunk]).subspan(place_[f].first, place_[f].count);
+
+  /// In ascending order; valid until the next call. Some may be taken.
+  std::span<const std::uint32_t> of(std::uint32_t f, const std::vector<bool>& taken) {
+    if (place_[f].count != kCrowded)
+      return std::span(found_[place_[f].chunk]).subspan(place_[f].first, place_[f].count);
+    asked_.clear();
+    const Box around = tree_.box(f);
+    tree_.visit_if([&](const Box& b) { return b.touches(around); },
+                   [&](std::uint32_t g) {
+                     ++met_;
+                     if (!taken[g] && may_share_plane(f, g)) asked_.push_back(g);
+                   },
+                   [&](std::size_t node) { return free_[node] > 0; });
+    CrowdLimit{"pairs of faces touch by their boxes", 50'000'000 + 100 * shapes_.size()}.check(met_, complex_);
+    std::sort(asked_.begin(), asked_.end());
+    return asked_;
+  }
+  /// To be told of all that a group takes or gives back.
+  void take(std::uint32_t f) {
+    if (!free_.empty()) tree_.visit_nodes_of(in_order_[f], [&](std::size_t node) { --free_[node]; });
+  }
+  void give_back(std::uint32_t f) {
+    if (!free_.empty()) tree_.visit_nodes_of(in_order_[f], [&](std::size_t node) { ++free_[node]; });
   }
 
  private:
-  static constexpr std::size_t kGrain = 1024;
+  static constexpr std::size_t kGrain = 1024, kMany = 256;
+  static constexpr std::uint32_t kCrowded = 0xffffffff;
   struct Place {
     std::uint32_t chunk, first, count;
   };
+  struct BoxOfFace {
+    const FaceComplex* complex;
+    const std::vector<FaceShape>* shapes;
+    Box operator()(std::uint32_t f) const {
+      Box box;
+      for (const std::uint32_t v : complex->faces[f].corner) box.add(complex->vertices[v]);
+      return box.grown(std::min(complex->allowed.contact, complex->allowed.local_share * (*shapes)[f].longest));
+    }
+  };
+  bool may_share_plane(std::uint32_t f, std::uint32_t g) const {
+    return g != f && length(cross(shapes_[f].normal, shapes_[g].normal)) <=
+                         normal_slack(complex_, shapes_[f]) + normal_slack(complex_, shapes_[g]);
+  }
+
+  const FaceComplex& complex_;
+  const std::vector<FaceShape>& shapes_;
+  BoxTree<BoxOfFace> tree_;
   std::vector<Place> place_;
   std::vector<std::vector<std::uint32_t>> found_;
+  std::vector<std::uint32_t> free_;      // by node, of its faces those not taken; empty where no face is crowded
+  std::vector<std::uint32_t> in_order_;  // by face, its place in the tree's order
+  std::vector<std::uint32_t> asked_;
+  std::size_t met_ = 0;
 };
 
 }  // namespace
@@ -118,7 +167,7 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
   parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) shapes[f] = shape_of(complex, complex.faces[f]);
   });
-  const Neighbours neighbours(complex, shapes);
+  Neighbours neighbours(complex, shapes);
 
   std::vector<std::uint32_t> by_area(count);
   std::iota(by_area.begin(), by_area.end(), 0u);
@@ -129,14 +178,16 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
   std::vector<PlaneGroup> groups;
   std::vector<bool> placed(count);
   const auto grow = [&](std::uint32_t seed, const Plane& plane, double drift) {
-    std::vector<std::uint32_t> faces{seed};
-    placed[seed] = true;
+    std::vector<std::uint32_t> faces;
+    const auto place = [&](std::uint32_t f) {
+      placed[f] = true;
+      neighbours.take(f);
+      faces.push_back(f);
+    };
+    place(seed);
     for (std::size_t k = 0; k < faces.size(); ++k)
-      for (const std::uint32_t f : neighbours.of(faces[k])) {
-        if (placed[f] || !lies_in(plane, complex, complex.faces[f], shapes[f], drift)) continue;
-        placed[f] = true;
-        faces.push_back(f);
-      }
+      for (const std::uint32_t f : neighbours.of(faces[k], placed))
+        if (!placed[f] && lies_in(plane, complex, complex.faces[f], shapes[f], drift)) place(f);
     return faces;
   };
   for (const std::uint32_t seed : by_area) {
@@ -151,7 +202,10 @@ std::vector<PlaneGroup> group_by_plane(const FaceComplex& complex) {
     // ... and then strictly in the plane that fits all of that, unless it is not the seed's any more.
     if (fits(seed)) group.plane = fitted;
     if (!fits(seed) || !std::all_of(group.faces.begin(), group.faces.end(), fits)) {
-      for (const std::uint32_t f : group.faces) placed[f] = false;
+      for (const std::uint32_t f : group.faces) {
+        placed[f] = false;
+        neighbours.give_back(f);
+      }
       group.faces = grow(seed, group.plane, 0);
     }
     std::sort(group.faces.begin(), group.faces.end());

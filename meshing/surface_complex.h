@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "solver/model/ids.h"
@@ -30,8 +32,9 @@ struct Face {
 
 /// Faces as read, without the defects that a face has by itself. Faces may still overlap, touch and cross each other.
 struct FaceComplex {
-  Vec3 origin;      ///< of the working frame, in the scene's frame [m]
-  double size = 1;  ///< of the unit of the working frame [m]
+  std::string file;  ///< that messages name
+  Vec3 origin;       ///< of the working frame, in the scene's frame [m]
+  double size = 1;   ///< of the unit of the working frame [m]
   Tolerance allowed = kTolerances[0];
   std::vector<Vec3> vertices;
   std::vector<double>
@@ -48,6 +51,16 @@ struct FaceComplex {
 
 struct Point2 {
   double x = 0, y = 0;
+};
+
+/// What meshing takes of things that lie in one place. Their pairs grow with the square of their number: no building
+/// has so many of them, and nobody waits for what has.
+struct CrowdLimit {
+  std::string_view what;  ///< "pairs of faces lie so close that their boxes touch"
+  std::size_t most;
+
+  /// throws  InputError when there are more.
+  void check(std::size_t count, const FaceComplex& complex) const;
 };
 
 /// A plane with a frame: (t, b) in the plane, n normal to it.

@@ -27,7 +27,7 @@ Vec3 area_vector(std::span<const Vec3> polygon) {
   return sum / 2;
 }
 
-PolygonTriangles triangulate_polygon(std::span<const Vec3> polygon) {
+PolygonTriangles triangulate_polygon(std::span<const Vec3> polygon, std::size_t most_crossings) {
   const auto n = static_cast<std::uint32_t>(polygon.size());
   PolygonTriangles result;
   if (n < 3) return result;
@@ -56,8 +56,13 @@ PolygonTriangles triangulate_polygon(std::span<const Vec3> polygon) {
     const std::uint32_t a = corner[k]->info().id, b = corner[(k + 1) % n]->info().id;
     if (a != b) ++times[{std::min(a, b), std::max(a, b)}];
   }
-  for (const auto& [edge, count] : times)
+  const std::size_t most_vertices = cdt.number_of_vertices() + most_crossings;
+  for (const auto& [edge, count] : times) {
     if (count % 2 == 1) cdt.insert_constraint(corner[edge[0]], corner[edge[1]]);
+    if (cdt.number_of_vertices() <= most_vertices) continue;
+    result.gave_up = true;
+    return result;
+  }
 
   for (const auto v : cdt.finite_vertex_handles())
     if (v->info().id == kNoVertex) {

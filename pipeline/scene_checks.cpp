@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "io/scene_file/nearest_name.h"
+#include "io/text.h"
 #include "pipeline/wording.h"
 #include "solver/gather/gather.h"
 #include "solver/lights/luminaire.h"
@@ -13,25 +14,45 @@
 namespace clerestory {
 namespace {
 
-/// Share of 256 directions, spread evenly over the sphere, in which nothing is met.
-double open_share(const Problem& problem, const Vec3& position) {
-  constexpr int kDirections = 256;
+/// Share of some directions, spread evenly over the sphere, in which nothing is met.
+double open_share(const Problem& problem, const Vec3& position, int directions) {
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
   int escaped = 0;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z), phi = i * golden_angle;
+  for (int i = 0; i < directions; ++i) {
+    const double z = 1 - (2 * i + 1.0) / directions, r = std::sqrt(1 - z * z), phi = i * golden_angle;
     if (problem.rays.first_hit(problem.patches, {position, {r * std::cos(phi), r * std::sin(phi), z}}).escaped())
       ++escaped;
   }
-  return double(escaped) / kDirections;
+  return double(escaped) / directions;
 }
 
-void warn_about_luminaire(const Problem& problem, const std::string& name, const Vec3& position, Observer& observer) {
-  const double open = open_share(problem, position);
-  if (open <= 0.6) return;
-  const Vec3 p = position + problem.patches.origin;
-  observer.warn("luminaire '" + name + "' at (" + rounded(p.x, 4) + ", " + rounded(p.y, 4) + ", " + rounded(p.z, 4) +
-                ") stands outside every room: " + percent(open) + " of the directions around it meet nothing.");
+/// The first of those that stand in the open one by one, the others by their number; of very many, each is looked at in
+/// few directions before it is looked at in all.
+void warn_about_luminaires(const Problem& problem, Observer& observer) {
+  constexpr int kDirections = 256;
+  constexpr std::size_t kMostRays = 1 << 21, kShown = 20;
+  constexpr double kOpen = 0.6;
+  const auto& luminaires = problem.lights.luminaires;
+  if (luminaires.empty()) return;
+  const int first_look = static_cast<int>(std::clamp<std::size_t>(kMostRays / luminaires.size(), 8, kDirections));
+  std::size_t shown = 0, more = 0;
+  for (const PlacedLuminaire& luminaire : luminaires) {
+    if (luminaire.mirror != kNoMirror || open_share(problem, luminaire.position, first_look) <= kOpen) continue;
+    if (shown == kShown) {
+      ++more;
+      continue;
+    }
+    const double open = open_share(problem, luminaire.position, kDirections);
+    if (open <= kOpen) continue;
+    ++shown;
+    const Vec3 p = luminaire.position + problem.patches.origin;
+    observer.warn("luminaire '" + luminaire.name + "' at (" + rounded(p.x, 4) + ", " + rounded(p.y, 4) + ", " +
+                  rounded(p.z, 4) + ") stands outside every room: " + percent(open) +
+                  " of the directions around it meet nothing.");
+  }
+  if (more > 0)
+    observer.warn((first_look < kDirections ? "about " : "") + grouped(more) +
+                  " more luminaires stand outside every room.");
 }
 
 /// "rows 3, 7, 8 and 12 more"
@@ -50,9 +71,33 @@ std::string why_unused(const std::string& pattern, const Scene& scene) {
     if (material.name == pattern) return "decides nothing: a rule before it matches that material first.";
     names.push_back(material.name);
   }
+  constexpr std::size_t kMostPairs = 200'000;  // of names to compare, for a hint
+  if (names.size() * scene.unused_materials.size() > kMostPairs) names.clear();
   const std::string near = suggestion(pattern, names);
   return near.starts_with("did you mean") ? "matches no material of the model; " + near
                                           : "matches no material of the model.";
+}
+
+/// Of very many only as many as can be looked at in a second or two, evenly spread.
+void warn_about_sensors(const Problem& problem, const std::string& file, const SensorPlanes& sensors,
+                        Observer& observer) {
+  constexpr std::size_t kMostPlanes = 100'000;
+  const std::size_t step = 1 + sensors.planes.size() / kMostPlanes;
+  if (step == 1) {
+    const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
+    if (!buried.empty())
+      observer.warn(file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +
+                    ") inside a solid or on a surface; what arrives there means little.");
+    return;
+  }
+  std::vector<SensorPoint> some;
+  for (std::size_t s = 0; s < sensors.sensor_count(); s += step) some.push_back(sensors.planes[sensors.begin[s]]);
+  std::vector<std::size_t> buried = buried_points(problem, some);
+  for (std::size_t& row : buried) row *= step;
+  if (!buried.empty())
+    observer.warn(file + ": of " + grouped(some.size()) + " sensors looked at, one in " + grouped(step) + ", " +
+                  grouped(buried.size()) + " (" + row_list(buried) +
+                  ") inside a solid or on a surface; what arrives there means little.");
 }
 
 }  // namespace
@@ -77,18 +122,17 @@ void require_light(const Scene& scene) {
 }
 
 void warn_about_scene(const Scene& scene, Observer& observer) {
-  for (const std::string& warning : scene.warnings) observer.warn(warning);
+  constexpr std::size_t kShown = 500;
+  for (std::size_t i = 0; i < std::min(scene.warnings.size(), kShown); ++i) observer.warn(scene.warnings[i]);
+  if (scene.warnings.size() > kShown)
+    observer.warn(scene.file + ": " + grouped(scene.warnings.size() - kShown) + " more warnings are left out.");
   for (const std::string& name : scene.unused_materials)
-    observer.warn(scene.file + ": materials '" + name + "' " + why_unused(name, scene));
+    observer.warn(scene.file + ": materials '" + quotable(name) + "' " + why_unused(name, scene));
 }
 
 void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Observer& observer) {
-  for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
-    if (luminaire.mirror == kNoMirror) warn_about_luminaire(problem, luminaire.name, luminaire.position, observer);
-  const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
-  if (!buried.empty())
-    observer.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +
-                  ") inside a solid or on a surface; what arrives there means little.");
+  warn_about_luminaires(problem, observer);
+  warn_about_sensors(problem, scene.file, sensors, observer);
 }
 
 }  // namespace clerestory

@@ -65,6 +65,9 @@ PatchSet faces_as_patches(const Scene& scene) {
       polygon.push_back(soup.vertices[soup.corner[c]] - patches.origin);
     if (!std::ranges::all_of(polygon, is_finite)) continue;
     PolygonTriangles cut = triangulate_polygon(polygon);
+    if (cut.gave_up)
+      throw InputError(scene.file + ": face " + std::to_string(f) + " (from 0) with " + std::to_string(polygon.size()) +
+                       " corners crosses itself too often; draw it as polygons that do not, or as triangles.");
     polygon.insert(polygon.end(), cut.crossings.begin(), cut.crossings.end());
     const std::size_t start = patches.vertices.size();
     patches.vertices.insert(patches.vertices.end(), polygon.begin(), polygon.end());

@@ -16,6 +16,7 @@ struct LocalMesh {
   std::vector<std::uint32_t> corner;
   std::vector<std::uint32_t> face_begin{0};
   MaterialId material;
+  std::vector<std::uint32_t> number{};  ///< of each vertex in the file, where that is another than here
 };
 
 /// Each call adds the mesh once more; a mirroring transform turns the corners round, so that fronts stay fronts.

@@ -116,6 +116,25 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& in, st
   return out;
 }
 
+/// Of vertices that primitives share, each takes its own when they are few: a node that shows a triangle then costs
+/// three vertices, and not all there are. Corners without a vertex stay so.
+void take_vertices(const std::vector<Vec3>& shared, LocalMesh& mesh) {
+  const auto is_there = [&](std::uint32_t v) { return v < shared.size(); };
+  if (mesh.corner.size() >= shared.size() / 8 || !std::all_of(mesh.corner.begin(), mesh.corner.end(), is_there)) {
+    mesh.vertices = shared;
+    return;
+  }
+  std::unordered_map<std::uint32_t, std::uint32_t> place;
+  for (std::uint32_t& corner : mesh.corner) {
+    const auto [at, is_new] = place.try_emplace(corner, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) {
+      mesh.vertices.push_back(shared[corner]);
+      mesh.number.push_back(corner);
+    }
+    corner = at->second;
+  }
+}
+
 class GltfReader {
  public:
   explicit GltfReader(const std::filesystem::path& path)
@@ -276,6 +295,7 @@ class GltfReader {
       // Vertices cost as well, even where few of them carry faces.
       faces_ += std::max(part.face_begin.size() - 1, part.vertices.size() / 8);
       if (faces_ > kMaxFaces) file_.refuse(text("more than ", kMaxFaces, " faces"));
+      file_.spend(part.vertices.size() + part.corner.size(), where);
       add_mesh(model_, part, place, surface, file_.name());
     }
   }
@@ -309,16 +329,20 @@ class GltfReader {
     if (attributes == primitive.end() || !attributes->is_object() || !attributes->contains("POSITION"))
       return std::nullopt;
     LocalMesh mesh;
-    mesh.vertices = file_.positions(whole_number(file_, *attributes, "POSITION", 0, where + ".attributes"));
+    const std::vector<Vec3>& vertices =
+        file_.positions(whole_number(file_, *attributes, "POSITION", 0, where + ".attributes"));
     std::vector<std::uint32_t> order;
     if (primitive.contains("indices")) {
       order = file_.indices(whole_number(file_, primitive, "indices", 0, where));
     } else {
-      order.resize(mesh.vertices.size());
+      order.resize(vertices.size());
       for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
     }
+    file_.spend((mode == 4 ? 1 : 3) * order.size(), where);
     mesh.corner = as_triangles(order, mode);
     mesh.corner.resize(mesh.corner.size() / 3 * 3);
+    take_vertices(vertices, mesh);
+    file_.spend(mesh.vertices.size(), where);
     for (std::size_t c = 3; c <= mesh.corner.size(); c += 3) mesh.face_begin.push_back(static_cast<std::uint32_t>(c));
     mesh.material = no_material_;
     if (primitive.contains("material")) {
@@ -403,13 +427,16 @@ class GltfReader {
       file_.refuse(text(where, " uses light ", index, ", which is not there"));
     const Json& light = (*list)[index];
     const std::string of_light = text("EXT_lights_ies.lights[", index, "]");
-    const std::string uri = text_member(file_, light, "uri", of_light);
-    if (uri.empty() && !light.contains("bufferView")) file_.refuse(of_light + " has neither a uri nor a bufferView");
-    const std::string bytes = uri.empty()
-                                  ? std::string(file_.view_bytes(whole_number(file_, light, "bufferView", 0, of_light)))
-                                  : file_.uri_bytes(uri, of_light);
+    const bool has_uri = !text_member(file_, light, "uri", of_light).empty();
+    if (!has_uri && !light.contains("bufferView")) file_.refuse(of_light + " has neither a uri nor a bufferView");
+    const std::string_view bytes = has_uri ? file_.uri_bytes(light["uri"].get_ref<const std::string&>(), of_light)
+                                           : file_.view_bytes(whole_number(file_, light, "bufferView", 0, of_light));
+    auto& of_bytes = parsed_[bytes.data()];
+    if (of_bytes.second && of_bytes.first == bytes.size()) return web = of_bytes.second;
+    file_.spend(bytes.size(), of_light);
     try {
       web = std::make_shared<const PhotometricWeb>(parse_ies(bytes, of_light, folder_, model_.warnings, &model_.files));
+      of_bytes = {bytes.size(), web};
     } catch (const InputError& error) {
       file_.refuse(error.what());
     }
@@ -418,7 +445,8 @@ class GltfReader {
 
   GltfFile file_;
   std::filesystem::path folder_;
-  std::map<std::size_t, std::shared_ptr<const PhotometricWeb>> profiles_;
+  std::map<std::size_t, std::shared_ptr<const PhotometricWeb>> profiles_;                        // by light
+  std::map<const char*, std::pair<std::size_t, std::shared_ptr<const PhotometricWeb>>> parsed_;  // by where they are
   std::map<std::size_t, std::size_t> texture_by_image_;
   std::string stem_;
   Model model_;

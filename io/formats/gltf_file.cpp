@@ -15,7 +15,11 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMaxBytes = 4ull << 30;
-constexpr std::size_t kMaxUnbacked = 1 << 24;  // elements of an accessor that no buffer pays for
+// What all accessors of a file may expand to: so much for nothing, and so much for each byte of the file and its
+// buffers.
+constexpr std::size_t kFreeElements = 24'000'000, kElementsPerByte = 4;
+// Of elements that no buffer pays for; zeros that only a sparse accessor makes any use of.
+constexpr std::size_t kFreeUnbacked = 1'000'000, kBytesPerUnbacked = 16;
 constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
 static_assert(std::endian::native == std::endian::little, "glTF numbers are little-endian");
@@ -108,13 +112,15 @@ double component(std::string_view bytes, std::size_t at, std::size_t type, bool 
 }  // namespace
 
 GltfFile::GltfFile(const std::filesystem::path& file) : file_(file), name_(short_name(file)) {
-  const std::string bytes = read_input_file(file, kMaxBytes);
-  const bool is_binary = bytes.size() >= 4 && read_as<std::uint32_t>(bytes, 0) == kGlbMagic;
+  bytes_ = read_input_file(file, kMaxBytes);
+  bytes_read_ = bytes_.size();
+  const bool is_binary = bytes_.size() >= 4 && read_as<std::uint32_t>(bytes_, 0) == kGlbMagic;
   if (!is_binary && to_lower(file.extension().string()) == ".glb") {
     refuse("does not start like a .glb file; is it damaged, or another format?");
   }
-  const Chunks chunks = is_binary ? split_glb(bytes, name_) : Chunks{bytes, {}};
+  const Chunks chunks = is_binary ? split_glb(bytes_, name_) : Chunks{bytes_, {}};
   root_ = parse_json<Json>(chunks.json, name_, {.deepest = 128, .most_keys = 1'000'000});
+  if (!is_binary) bytes_.clear();
   if (!root_.is_object()) refuse("is JSON, but not glTF");
   const auto asset = root_.find("asset");
   if (asset == root_.end() || !asset->is_object()) refuse("is JSON, but not glTF: it has no \"asset\"");
@@ -145,19 +151,26 @@ const Json& GltfFile::element(const char* key, std::size_t index) const {
   return all[index];
 }
 
-std::string GltfFile::uri_bytes(const std::string& uri, const std::string& where) const {
-  std::string bytes;
+std::string_view GltfFile::uri_bytes(const std::string& uri, const std::string& where) {
   if (uri.starts_with("data:")) {
+    const auto [at, is_new] = data_.try_emplace(uri);
     const std::size_t comma = uri.find(";base64,");
-    if (comma == uri.npos || !decode_base64(std::string_view(uri).substr(comma + 8), bytes)) {
+    if (is_new && (comma == uri.npos || !decode_base64(std::string_view(uri).substr(comma + 8), at->second))) {
       refuse(where + ": its data URI is not base64");
     }
-    return bytes;
+    return at->second;
   }
   if (uri.find("://") != uri.npos)
     refuse(text(where, " '", quotable(uri), "' is on the net; only files beside the model are read"));
+  const std::filesystem::path file = file_.parent_path() / percent_decoded(uri);
+  std::error_code unknown;  // then read_input_file says what is wrong
+  const auto [at, is_new] = files_.try_emplace(std::filesystem::weakly_canonical(file, unknown));
   try {
-    return read_input_file(file_.parent_path() / percent_decoded(uri), kMaxBytes);
+    if (is_new) {
+      at->second = read_input_file(file, kMaxBytes);
+      bytes_read_ += at->second.size();
+    }
+    return at->second;
   } catch (const InputError& error) {
     refuse(text(where, ": ", error.what()));
   }
@@ -179,17 +192,18 @@ std::vector<std::filesystem::path> GltfFile::files() const {
   return files;
 }
 
-std::string GltfFile::buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk) const {
+std::string_view GltfFile::buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk) {
   const std::string where = text("buffers[", index, "]");
   if (!buffer.is_object()) refuse(where + " must be an object");
   const std::size_t length = whole_number(*this, buffer, "byteLength", 0, where);
-  const std::string uri = text_member(*this, buffer, "uri", where);
-  std::string bytes;
-  if (uri.empty()) {
+  const auto uri = buffer.find("uri");
+  if (uri != buffer.end() && !uri->is_string()) refuse(where + ".uri must be a text");
+  std::string_view bytes;
+  if (uri == buffer.end() || uri->get_ref<const std::string&>().empty()) {
     if (index != 0 || binary_chunk.empty()) refuse(where + " has neither a uri nor a binary chunk");
     bytes = binary_chunk;
   } else {
-    bytes = uri_bytes(uri, where);
+    bytes = uri_bytes(uri->get_ref<const std::string&>(), where);
   }
   if (bytes.size() < length) refuse(text(where, " has ", bytes.size(), " of ", length, " bytes; the file is cut off"));
   return bytes;
@@ -214,7 +228,16 @@ GltfFile::View GltfFile::view(std::size_t index) const {
   return {bytes.substr(offset, length), stride};
 }
 
-std::vector<double> GltfFile::numbers(std::size_t index, const char* type, std::size_t n) const {
+void GltfFile::spend(std::size_t vertices_and_corners, const std::string& where) {
+  spent_ += vertices_and_corners;
+  const std::size_t most = kFreeElements + kElementsPerByte * bytes_read_;
+  if (spent_ <= most) return;
+  refuse(
+      text(where, ": with it the file's ", bytes_read_, " bytes make more than ", most,
+           " vertices and corners, the most for that size; export parts that repeat less often, or with less detail"));
+}
+
+std::vector<double> GltfFile::numbers(std::size_t index, const char* type, std::size_t n) {
   const Json& json = element("accessors", index);
   const std::string where = text("accessors[", index, "]");
   if (text_member(*this, json, "type", where) != type) refuse(text(where, ".type must be ", type, " for this use"));
@@ -234,6 +257,7 @@ std::vector<double> GltfFile::numbers(std::size_t index, const char* type, std::
         (offset > bytes || size * parts > bytes - offset || elements - 1 > (bytes - offset - size * parts) / stride)) {
       refuse(text(place, " needs ", elements, " elements, more than its bufferView of ", bytes, " bytes holds"));
     }
+    spend(elements, place);
     to.reserve(elements * parts);
     for (std::size_t e = 0; e < elements; ++e) {
       for (std::size_t k = 0; k < parts; ++k) {
@@ -247,7 +271,13 @@ std::vector<double> GltfFile::numbers(std::size_t index, const char* type, std::
   if (json.contains("bufferView")) {
     copy(json, component_type, n, count, is_normalized, where, values);
   } else {
-    if (count > kMaxUnbacked) refuse(text(where, " has ", count, " elements and no bufferView"));
+    const std::size_t most = kFreeUnbacked + bytes_read_ / kBytesPerUnbacked;
+    if (count > most - unbacked_) {
+      refuse(text(where, " has ", count, " elements and no bufferView, which makes more than ", most,
+                  " of such in this file; export it with its data"));
+    }
+    unbacked_ += count;
+    spend(count, where);
     values.assign(count * n, 0.0);
   }
   const auto sparse = json.find("sparse");
@@ -256,6 +286,7 @@ std::vector<double> GltfFile::numbers(std::size_t index, const char* type, std::
     if (!sparse->is_object() || !sparse->contains("indices") || !sparse->contains("values"))
       refuse(place + " lacks indices or values");
     const std::size_t changed = whole_number(*this, *sparse, "count", 0, place);
+    if (changed > count) refuse(text(place, ".count = ", changed, " is more than the accessor's ", count));
     const Json& at = (*sparse)["indices"];
     if (!at.is_object() || !(*sparse)["values"].is_object()) refuse(place + " lacks indices or values");
     std::vector<double> where_to, what;
@@ -270,14 +301,17 @@ std::vector<double> GltfFile::numbers(std::size_t index, const char* type, std::
   return values;
 }
 
-std::vector<Vec3> GltfFile::positions(std::size_t accessor) const {
+const std::vector<Vec3>& GltfFile::positions(std::size_t accessor) {
+  const auto [at, is_new] = positions_.try_emplace(accessor);
+  if (!is_new) return at->second;
   const std::vector<double> values = numbers(accessor, "VEC3", 3);
-  std::vector<Vec3> points(values.size() / 3);
+  std::vector<Vec3>& points = at->second;
+  points.resize(values.size() / 3);
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
   return points;
 }
 
-std::vector<std::uint32_t> GltfFile::indices(std::size_t accessor) const {
+std::vector<std::uint32_t> GltfFile::indices(std::size_t accessor) {
   const std::vector<double> values = numbers(accessor, "SCALAR", 1);
   std::vector<std::uint32_t> at;
   at.reserve(values.size());

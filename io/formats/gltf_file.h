@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +24,8 @@ class GltfFile {
   ///
   /// throws  InputError naming the element, here and in all that follows.
   explicit GltfFile(const std::filesystem::path& file);
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
 
   const std::string& name() const { return name_; }
   const Json& root() const { return root_; }
@@ -31,13 +35,19 @@ class GltfFile {
   /// Element of a list of the root, named by words such as "meshes[3]" when it is not there.
   const Json& element(const char* list, std::size_t index) const;
 
-  std::vector<Vec3> positions(std::size_t accessor) const;
-  std::vector<std::uint32_t> indices(std::size_t accessor) const;
-  /// What a uri stands for: a data URI, or a file beside the model.
-  std::string uri_bytes(const std::string& uri, const std::string& where) const;
+  /// Of an accessor, decoded once however often it is used.
+  const std::vector<Vec3>& positions(std::size_t accessor);
+  std::vector<std::uint32_t> indices(std::size_t accessor);
+  /// What a uri stands for: a data URI, or a file beside the model. Read once, whatever number of times and by whatever
+  /// path it is named. `uri` is a text of root().
+  std::string_view uri_bytes(const std::string& uri, const std::string& where);
   /// The files beside the model that its uris name.
   std::vector<std::filesystem::path> files() const;
   std::string_view view_bytes(std::size_t buffer_view) const { return view(buffer_view).bytes; }
+
+  /// Takes vertices and corners from what the whole file may grow to, which goes by the bytes it has; refuses when
+  /// nothing is left. A mesh that many nodes show counts as often, a vertex that many primitives share too.
+  void spend(std::size_t vertices_and_corners, const std::string& where);
 
   [[noreturn]] void refuse(const std::string& what) const;
 
@@ -48,13 +58,17 @@ class GltfFile {
   };
   View view(std::size_t buffer_view) const;
   /// All components of an accessor, n of them an element, as numbers.
-  std::vector<double> numbers(std::size_t accessor, const char* type, std::size_t n) const;
-  std::string buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk) const;
+  std::vector<double> numbers(std::size_t accessor, const char* type, std::size_t n);
+  std::string_view buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk);
 
   std::filesystem::path file_;
-  std::string name_;
+  std::string name_, bytes_;
   Json root_;
-  std::vector<std::string> buffers_;
+  std::map<std::filesystem::path, std::string> files_;            // named by uris, by the one path each has
+  std::unordered_map<std::string_view, std::string> data_;        // of data URIs, which root_ holds
+  std::vector<std::string_view> buffers_;                         // parts of bytes_, files_ and data_
+  std::unordered_map<std::size_t, std::vector<Vec3>> positions_;  // by accessor
+  std::size_t bytes_read_ = 0, spent_ = 0, unbacked_ = 0;
 };
 
 /// A uri with its %20 and the like undone.

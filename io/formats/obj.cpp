@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "io/find_file.h"
 #include "io/formats/model.h"
@@ -154,6 +155,7 @@ class ObjReader {
 
   /// One name with blanks in it, or several names, perhaps in quotation marks.
   void read_libraries(std::string_view names) {
+    if (!library_lines_.insert(std::string(names)).second) return;
     const std::filesystem::path folder = file_.parent_path();
     const std::string lower = to_lower(names);
     const bool is_one = lower.find(".mtl") == lower.rfind(".mtl");
@@ -171,7 +173,10 @@ class ObjReader {
     }
   }
 
+  /// Once, however often and by whatever path it is named.
   void read_library(const std::filesystem::path& library) {
+    std::error_code error;
+    if (!libraries_.insert(std::filesystem::weakly_canonical(library, error).string()).second) return;
     model_.files.push_back(library);
     for (ModelMaterial& material : read_mtl(library, model_.textures, model_.warnings, model_.files)) {
       described_.try_emplace(material.material.name, material);
@@ -200,6 +205,7 @@ class ObjReader {
   std::unordered_map<std::string, SurfaceId> surface_by_name_;
   std::unordered_map<std::string, MaterialId> material_by_name_;
   std::unordered_map<std::string, ModelMaterial> described_;
+  std::unordered_set<std::string> library_lines_, libraries_;  // as they are written; by the one path each has
   SurfaceId surface_;
   MaterialId material_;
   std::size_t line_ = 0, short_faces_ = 0, free_forms_ = 0;

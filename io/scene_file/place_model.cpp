@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "io/affine.h"
 #include "io/input_file.h"
@@ -24,56 +23,51 @@ Affine to_scene(double metres, Up up, const std::optional<std::array<double, 16>
   return placed * file;
 }
 
-/// `name`, or where that is taken "name (stem)", "name (stem 2)" ...
-std::string unused_name(const std::string& name, const std::string& stem, const std::set<std::string>& taken) {
-  if (!taken.contains(name)) return name;
-  std::string candidate = text(name, " (", stem, ")");
-  for (int n = 2; taken.contains(candidate); ++n) candidate = text(name, " (", stem, " ", n, ")");
-  return candidate;
+void warn_once(Scene& scene, ModelsInScene& before, std::string warning) {
+  if (before.warnings.insert(warning).second) scene.warnings.push_back(std::move(warning));
 }
+
+/// A name for messages and results; what is longer than a page of text names nothing.
+std::string usable_name(const std::string& name) { return quotable(name, 1000); }
 
 /// For each material of the model its id in the scene; one that is there already, the same in all it says, is shared.
 /// Materials and surfaces that no face carries are left out.
-std::vector<MaterialId> add_materials(Scene& scene, const Model& model, const std::filesystem::path& file,
-                                      const MaterialOverride& by_scene_file) {
+std::vector<MaterialId> add_materials(Scene& scene, ModelsInScene& before, const Model& model,
+                                      const std::filesystem::path& file, const MaterialOverride& by_scene_file) {
   std::vector<bool> carried(model.materials.size(), false);
   for (const MaterialId m : model.polygons.material) carried[m] = true;
-  std::set<std::string> taken;
-  for (const Material& material : scene.materials) taken.insert(material.name);
-  const auto before = static_cast<std::ptrdiff_t>(scene.materials.size());
+  const std::size_t of_others = scene.materials.size();
+  const std::string stem = clean_text(file.stem().string());
   OwnMaterials own;
   std::vector<MaterialId> id(model.materials.size());
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
     if (!carried[m]) continue;
     ModelMaterial described = model.materials[m];
-    described.material.name = clean_text(described.material.name);
+    described.material.name = usable_name(described.material.name);
     Material material = described.material;
     if (!by_scene_file(material)) material = own.settle(described);
-    const auto others_end = scene.materials.begin() + before;
-    const auto same = std::find(scene.materials.begin(), others_end, material);
-    if (same != others_end) {
-      id[m] = MaterialId(static_cast<std::size_t>(same - scene.materials.begin()));
+    const auto same = before.material.find(material.name);
+    if (same != before.material.end() && same->second < of_others && scene.materials[same->second] == material) {
+      id[m] = same->second;
       continue;
     }
-    material.name = unused_name(material.name, clean_text(file.stem().string()), taken);
-    taken.insert(material.name);
+    material.name = before.materials.take(material.name, stem);
     id[m] = MaterialId(scene.materials.size());
+    before.material.emplace(material.name, id[m]);
     scene.materials.push_back(std::move(material));
   }
-  for (const std::string& warning : own.warnings()) scene.warnings.push_back(short_name(file) + ": " + warning);
+  for (const std::string& warning : own.warnings()) warn_once(scene, before, short_name(file) + ": " + warning);
   return id;
 }
 
-std::vector<SurfaceId> add_surfaces(Scene& scene, const Model& model, const std::string& stem) {
+std::vector<SurfaceId> add_surfaces(Scene& scene, NamesInUse& names, const Model& model, const std::string& stem) {
   std::vector<bool> carried(model.surfaces.size(), false);
   for (const SurfaceId s : model.polygons.surface) carried[s] = true;
-  std::set<std::string> taken(scene.surfaces.begin(), scene.surfaces.end());
   std::vector<SurfaceId> id(model.surfaces.size());
   for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
     if (!carried[s]) continue;
     id[s] = SurfaceId(scene.surfaces.size());
-    scene.surfaces.push_back(unused_name(clean_text(model.surfaces[s]), stem, taken));
-    taken.insert(scene.surfaces.back());
+    scene.surfaces.push_back(names.take(usable_name(model.surfaces[s]), stem));
   }
   return id;
 }
@@ -110,13 +104,13 @@ void add_lights(Scene& scene, const LightSpec& lights, const Affine& place, cons
   }
 }
 
-void warn_of_size(Scene& scene, const Vec3& size, bool unit_is_known, const std::string& name) {
+void warn_of_size(Scene& scene, ModelsInScene& before, const Vec3& size, bool unit_is_known, const std::string& name) {
   const double largest = std::max({size.x, size.y, size.z});
   const std::string extent = text(name, ": is ", size.x, " x ", size.y, " x ", size.z, " m large");
   if (largest < 0.01) {
-    scene.warnings.push_back(text(extent, "; is its unit larger than assumed? Say so with \"unit\" (--unit)"));
+    warn_once(scene, before, text(extent, "; is its unit larger than assumed? Say so with \"unit\" (--unit)"));
   } else if (largest > 10'000 || (!unit_is_known && largest > 500)) {
-    scene.warnings.push_back(text(extent, "; was it drawn in millimetres? Then say \"unit\": \"mm\" (--unit mm)"));
+    warn_once(scene, before, text(extent, "; was it drawn in millimetres? Then say \"unit\": \"mm\" (--unit mm)"));
   }
 }
 
@@ -133,26 +127,40 @@ std::optional<double> metres_of_unit(std::string_view unit) {
   return std::nullopt;
 }
 
-void place_model(Scene& scene, const Model& model, const std::filesystem::path& file, const Placement& placement,
-                 const MaterialOverride& by_scene_file) {
+std::string NamesInUse::take(const std::string& name, const std::string& stem) {
+  if (taken_.insert(name).second) return name;
+  const std::string start = text(name, " (", stem);
+  for (int& n = last_[start];;) {
+    const std::string candidate = ++n == 1 ? start + ")" : text(start, " ", n, ")");
+    if (taken_.insert(candidate).second) return candidate;
+  }
+}
+
+void place_model(Scene& scene, ModelsInScene& before, const Model& model, const std::filesystem::path& file,
+                 const Placement& placement, const MaterialOverride& by_scene_file) {
   const std::string name = short_name(file);
-  for (const std::string& warning : model.warnings) scene.warnings.push_back(name + ": " + warning);
+  constexpr std::size_t kShown = 50;
+  const std::size_t count = model.warnings.size();
+  for (std::size_t k = 0; k < std::min(count, kShown); ++k) warn_once(scene, before, name + ": " + model.warnings[k]);
+  if (count > kShown) warn_once(scene, before, text(name, ": ", count - kShown, " more warnings are left out"));
   if (model.metres_per_unit && placement.metres_per_unit &&
       std::abs(*model.metres_per_unit / *placement.metres_per_unit - 1) > 1e-9) {
-    scene.warnings.push_back(text(name, ": the file itself says ", words_of_unit(*model.metres_per_unit),
-                                  "; the unit given for it is not used. To scale the model, use \"transform\""));
+    warn_once(scene, before,
+              text(name, ": the file itself says ", words_of_unit(*model.metres_per_unit),
+                   "; the unit given for it is not used. To scale the model, use \"transform\""));
   }
   if (model.up && placement.up && *model.up != *placement.up) {
-    scene.warnings.push_back(text(name, ": the file itself says that ", *model.up == Up::y ? 'y' : 'z',
-                                  " is up; what was given for it is not used. To turn the model, use \"transform\""));
+    warn_once(scene, before,
+              text(name, ": the file itself says that ", *model.up == Up::y ? 'y' : 'z',
+                   " is up; what was given for it is not used. To turn the model, use \"transform\""));
   }
   const double metres = model.metres_per_unit.value_or(placement.metres_per_unit.value_or(1.0));
   const Affine place = to_scene(metres, model.up.value_or(placement.up.value_or(Up::z)), placement.transform);
   const bool mirrored = place.mirrors();
 
   const std::string stem = clean_text(file.stem().string());
-  const std::vector<MaterialId> material = add_materials(scene, model, file, by_scene_file);
-  const std::vector<SurfaceId> surface = add_surfaces(scene, model, stem);
+  const std::vector<MaterialId> material = add_materials(scene, before, model, file, by_scene_file);
+  const std::vector<SurfaceId> surface = add_surfaces(scene, before.surfaces, model, stem);
   add_lights(scene, model.lights, place, name);
 
   const PolygonSoup& from = model.polygons;
@@ -184,7 +192,7 @@ void place_model(Scene& scene, const Model& model, const std::filesystem::path& 
     }
     to.end_face(material[from.material[f]], surface[from.surface[f]]);
   }
-  warn_of_size(scene, upper - lower, model.metres_per_unit || placement.metres_per_unit, name);
+  warn_of_size(scene, before, upper - lower, model.metres_per_unit || placement.metres_per_unit, name);
 }
 
 }  // namespace clerestory

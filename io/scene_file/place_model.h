@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "io/formats/model.h"
 
@@ -23,8 +26,26 @@ std::optional<double> metres_of_unit(std::string_view unit);
 /// Gives a material what the scene file says about its name, and returns whether it says anything.
 using MaterialOverride = std::function<bool(Material&)>;
 
+/// Names in use, and a free one beside any other: "wall", "wall (annex)", "wall (annex 2)".
+class NamesInUse {
+ public:
+  std::string take(const std::string& name, const std::string& stem);
+
+ private:
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, int> last_;  ///< number given for a name and stem
+};
+
+/// What the models that a scene has so far have said; one for all of them, so that the thousandth is not compared with
+/// all before it.
+struct ModelsInScene {
+  NamesInUse surfaces, materials;
+  std::unordered_map<std::string, MaterialId> material;  ///< by name
+  std::unordered_set<std::string> warnings;
+};
+
 /// throws  InputError naming the surface whose coordinates leave the representable range.
-void place_model(Scene& scene, const Model& model, const std::filesystem::path& file, const Placement& placement,
-                 const MaterialOverride& by_scene_file);
+void place_model(Scene& scene, ModelsInScene& before, const Model& model, const std::filesystem::path& file,
+                 const Placement& placement, const MaterialOverride& by_scene_file);
 
 }  // namespace clerestory

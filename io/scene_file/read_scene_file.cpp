@@ -56,6 +56,7 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
   if (entries.size() > kMaxGeometry)
     throw InputError(text(root.place("geometry"), " has more than ", kMaxGeometry, " entries"));
   std::map<std::filesystem::path, Model> read_before;
+  ModelsInScene placed;
   std::size_t n = 0;
   for (const Json& entry : entries) {
     const JsonObject object(entry, text(file_name, ": geometry[", n++, "]"), {"file", "unit", "up", "transform"});
@@ -72,9 +73,11 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
       throw InputError(text(object.place("file"), " '", quotable(model_name), "' is a scene file; name a model"));
     }
     require_file(model_file, object.place("file"), model_name);
-    auto model = read_before.find(model_file);
+    std::error_code error;  // then read_model says what is wrong
+    const std::filesystem::path one_name = std::filesystem::weakly_canonical(model_file, error);
+    auto model = read_before.find(one_name);
     if (model == read_before.end()) {
-      model = read_before.emplace(model_file, read_model(model_file)).first;
+      model = read_before.emplace(one_name, read_model(model_file)).first;
       scene.files.insert(scene.files.end(), model->second.files.begin(), model->second.files.end());
       take_texture_means(model->second, [&](const std::string& material) {
         return std::ranges::any_of(
@@ -86,7 +89,7 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     if (scene.polygons.face_count() + model->second.polygons.face_count() > kMaxFaces) {
       throw InputError(text(object.where(), ": more than ", kMaxFaces, " faces in one scene"));
     }
-    place_model(scene, model->second, model_file, placement,
+    place_model(scene, placed, model->second, model_file, placement,
                 [&](Material& material) { return apply_rules(rules, material); });
   }
 }

@@ -98,7 +98,7 @@ std::vector<std::size_t> buried_points(const Problem& problem, std::span<const S
     std::uint32_t dark = 0;
     const ReceivingPoint at = point_of(i);
     const Frame frame(at.n);
-    for (std::uint32_t k = 0; k < kRays; ++k) {
+    for (std::uint32_t k = 0; k < kRays && 2 * (dark + kRays - k) > kRays && 2 * dark <= kRays; ++k) {
       const auto u = sobol4(k, stream_key(0, kBuriedPoints, i));
       const Hit hit = problem.rays.first_hit(problem.patches, {at.p, cosine_direction(frame, u[0], u[1])});
       dark += !hit.escaped() && !hit.patch.valid();

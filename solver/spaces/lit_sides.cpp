@@ -104,8 +104,9 @@ struct Found {
   std::vector<PatchId> glowing;  ///< patches that light it
 };
 
-Found look_for_lights(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t samples,
-                      std::uint64_t seed) {
+/// Every `stride`-th of the luminaires is looked for, another set for each patch.
+Found look_for_lights(const Problem& problem, const LightSampler& emitters, std::size_t i, std::size_t stride,
+                      std::size_t samples, std::uint64_t seed) {
   const auto corners = problem.patches.corner_positions(PatchId{i});
   const Vec3 n = problem.patches.normal[i];
   const double lift = problem.rays.lift();
@@ -116,15 +117,17 @@ Found look_for_lights(const Problem& problem, const LightSampler& emitters, std:
     points[k] = point_on_triangle(corners, u[0], u[1]) + n * lift;
   }
   Found found;
-  for (const PlacedLuminaire& luminaire : problem.lights.luminaires) {
+  const std::vector<PlacedLuminaire>& luminaires = problem.lights.luminaires;
+  for (std::size_t number = i % stride; number < luminaires.size() && !found.lit; number += stride) {
+    const PlacedLuminaire& luminaire = luminaires[number];
     if (luminaire.mirror != kNoMirror) continue;
-    found.lit = found.lit || any_visible(problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
-                  const auto u = sobol4(k, key + 1);
-                  from = points[k];
-                  const Vec3 q = light_point(luminaire, from, u[0], u[1]);
-                  to = short_of(q, from, lift);
-                  return !open_irradiance(luminaire, q, from, n).is_black();
-                });
+    found.lit = any_visible(problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
+      const auto u = sobol4(k, key + 1);
+      from = points[k];
+      const Vec3 q = light_point(luminaire, from, u[0], u[1]);
+      to = short_of(q, from, lift);
+      return !open_irradiance(luminaire, q, from, n).is_black();
+    });
   }
   for (std::uint32_t k = 0; k < samples && emitters.has_bright_patches(); ++k) {
     const auto u = sobol4(k, key);
@@ -139,7 +142,9 @@ void light_by_luminaires(const Problem& problem, std::uint64_t seed, Spaces& spa
   const std::vector<PlacedLuminaire>& luminaires = problem.lights.luminaires;
   const std::size_t count = luminaires.size();
   if (count == 0) return;
-  const std::size_t rays_each = std::clamp<std::size_t>((1 << 16) / count, 256, 4096);
+  // Of very many each stands among others, and the sides look around as well: the effort has a bound.
+  const std::size_t rays_each =
+      std::min(std::clamp<std::size_t>((1 << 16) / count, 256, 4096), std::max<std::size_t>((1 << 22) / count, 8));
   std::vector<PatchId> met(count * rays_each);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number) {
@@ -177,11 +182,14 @@ void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& space
 void search_lights(const Problem& problem, const Field& glow, const std::vector<std::uint32_t>& receivers,
                    std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
   const LightSampler emitters(problem, glow);
+  // So that the effort has a bound.
+  constexpr std::size_t kMostPairs = 1 << 25;
+  const std::size_t stride = 1 + receivers.size() * problem.lights.luminaires.size() / kMostPairs;
   for (std::size_t begin = 0; begin < receivers.size() && !monitor.should_stop(); begin += kBlock) {
     std::vector<Found> found(std::min(kBlock, receivers.size() - begin));
     parallel_for(found.size(), 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k)
-        found[k] = look_for_lights(problem, emitters, receivers[begin + k], samples, seed);
+        found[k] = look_for_lights(problem, emitters, receivers[begin + k], stride, samples, seed);
     });
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (found[k].lit) spaces.light(receivers[begin + k]);

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <string>
 
-#include "meshing/box_tree.h"
 #include "meshing/point_index.h"
 #include "meshing/triangulate_polygon.h"
+#include "solver/model/box_tree.h"
 #include "solver/model/error.h"
 
 namespace clerestory {

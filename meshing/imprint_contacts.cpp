@@ -10,8 +10,8 @@
 #include <span>
 #include <utility>
 
-#include "meshing/box_tree.h"
 #include "meshing/point_index.h"
+#include "solver/model/box_tree.h"
 #include "solver/model/parallel.h"
 
 namespace clerestory {

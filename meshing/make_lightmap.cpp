@@ -64,17 +64,37 @@ std::vector<TriangleEdge> triangle_edges(const PatchSet& patches) {
   return edges;
 }
 
-/// Facets around a point that face nearly the same way.
-struct Facing {
-  Vec3 normal;  ///< of the first of them
-  Vec3 inward;  ///< sum of the ways to the centroids of those in the first one's plane
-  int in_plane = 0;
-  double weight = 0;  ///< angle at the point
-};
-
 /// Corner k of patch p, in the patch's order.
 struct Corner {
   std::uint32_t p, k;
+};
+
+/// A facet as seen from a point in its corner.
+struct FacetAtPoint {
+  Vec3 first, second;  ///< the edges that it lies between, counter-clockwise
+  double angle;        ///< between them
+
+  Vec3 to_centroid() const { return (first + second) / 3; }
+  bool holds(const Vec3& d, const Vec3& n) const {
+    return dot(cross(first, d), n) >= 0 && dot(cross(d, second), n) >= 0 && dot(d, first + second) > 0;
+  }
+};
+
+/// Facets around a point that face nearly the same way.
+struct Facing {
+  Vec3 normal;                         ///< of the first of them
+  std::vector<FacetAtPoint> in_plane;  ///< those in the first one's plane
+  double weight = 0;                   ///< angle at the point
+
+  /// Into the surface: to the mean of the facets' centroids where that is on one of them. Where the surface goes most
+  /// of the way around a corner of something else, the mean may be inside of that; then to the widest facet's centroid.
+  Vec3 inward() const {
+    Vec3 mean;
+    for (const FacetAtPoint& f : in_plane) mean += f.to_centroid();
+    mean = mean / static_cast<double>(in_plane.size());
+    if (std::ranges::any_of(in_plane, [&](const FacetAtPoint& f) { return f.holds(mean, normal); })) return mean;
+    return std::ranges::max_element(in_plane, {}, &FacetAtPoint::angle)->to_centroid();
+  }
 };
 
 /// Samples of the last point, around which the given corners lie. They stay in the plane of a facet, whose own normal
@@ -88,16 +108,16 @@ void place_samples(const PatchSet& patches, std::span<const Corner> around, std:
     const auto x = patches.corner_positions(PatchId{std::size_t{p}});
     auto facing = std::find_if(facings.begin(), facings.end(),
                                [&](const Facing& f) { return dot(f.normal, normal) > VertexLightmap::kAlike; });
-    if (facing == facings.end()) facing = facings.insert(facings.end(), Facing{normal, {}, 0, 0});
-    facing->weight += angle_at(x, k);
+    if (facing == facings.end()) facing = facings.insert(facings.end(), Facing{normal, {}, 0});
+    const double angle = angle_at(x, k);
+    facing->weight += angle;
     if (dot(facing->normal, normal) < kInPlane) continue;
-    facing->inward += (x[0] + x[1] + x[2]) / 3 - x[k];
-    ++facing->in_plane;
+    facing->in_plane.push_back({x[(k + 1) % 3] - x[k], x[(k + 2) % 3] - x[k], angle});
   }
   double sum = 0;
   for (const Facing& f : facings) sum += f.weight;
   for (const Facing& f : facings) {
-    map.sample_position.push_back(map.position.back() + f.inward * (VertexLightmap::kWayToCentroid / f.in_plane));
+    map.sample_position.push_back(map.position.back() + f.inward() * VertexLightmap::kWayToCentroid);
     map.sample_normal.push_back(f.normal);
     map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
   }

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "meshing/box_tree.h"
 #include "meshing/surface_complex.h"
+#include "solver/model/box_tree.h"
 #include "solver/model/material.h"
 
 namespace clerestory {

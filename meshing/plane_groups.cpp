@@ -5,7 +5,7 @@
 #include <numeric>
 #include <span>
 
-#include "meshing/box_tree.h"
+#include "solver/model/box_tree.h"
 #include "solver/model/parallel.h"
 
 namespace clerestory {

@@ -120,7 +120,7 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
     for (int k = 0; k < 3; ++k)
       samples[s].x += weight[k] * luminous_mean(lightmap.E[lightmap.corners[i][static_cast<std::size_t>(k)]]);
     places[s] = {
-        point_on_triangle(patches.corner_positions(PatchId{i}), u, v) + patches.normal[i] * problem.rays.lift(),
+        problem.rays.off_surface(point_on_triangle(patches.corner_positions(PatchId{i}), u, v), patches.normal[i]),
         patches.normal[i]};
   }
   return compare(

@@ -58,7 +58,13 @@ struct LocalTriangle {
 class PairSampler {
  public:
   PairSampler(const SampledTriangle& p, const SampledTriangle& q, const RayScene& rays)
-      : origin_(p.corner[0]), p_(p, origin_), q_(q, origin_), rays_(rays), lift_(static_cast<float>(rays.lift())) {}
+      : origin_(p.corner[0]),
+        p_(p, origin_),
+        q_(q, origin_),
+        fine_p_(p),
+        fine_q_(q),
+        rays_(rays),
+        lift_(static_cast<float>(rays.lift())) {}
 
   /// Kernel of each point pair, 0 where one does not face the other.
   std::array<float, kLanes> kernel;
@@ -86,6 +92,7 @@ class PairSampler {
     }
     unsigned active = 0;
     for (std::size_t k = 0; k < kLanes; ++k) active |= (kernel[k] > 0 ? 1u : 0u) << k;
+    if (rays_.has_tight_places()) place_finely(cube, shift);
     const unsigned visible = active ? rays_.visible16(segments_, static_cast<std::uint16_t>(active)) : 0u;
     for (std::size_t k = 0; k < kLanes; ++k) share[k] = (visible >> k) & 1 ? 1.0f : 0.0f;
     rays_cast += std::popcount(active);
@@ -105,11 +112,23 @@ class PairSampler {
     return {t.corner.x + a * t.edge1.x + b * t.edge2.x, t.corner.y + a * t.edge1.y + b * t.edge2.y,
             t.corner.z + a * t.edge1.z + b * t.edge2.z};
   }
+  /// The same ends in double, lifted as far as there is room.
+  void place_finely(const Cube16& cube, const std::array<float, 4>& shift) {
+    const auto place = [&](const SampledTriangle& t, const std::array<float, 2>& weight) {
+      const double a{weight[0]}, b{weight[1]};
+      return rays_.off_surface(t.corner[0] * (1 - a - b) + t.corner[1] * a + t.corner[2] * b, t.normal);
+    };
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      segments_.from[k] = place(fine_p_, barycentric(cube.u[0][k] + shift[0], cube.u[1][k] + shift[1]));
+      segments_.to[k] = place(fine_q_, barycentric(cube.u[2][k] + shift[2], cube.u[3][k] + shift[3]));
+    }
+  }
   void pass_glass() {
     for (std::size_t k = 0; k < kLanes; ++k) {
       if (share[k] == 0) continue;
-      const Vec3 from{segments_.from_x[k], segments_.from_y[k], segments_.from_z[k]};
-      const Vec3 to{segments_.to_x[k], segments_.to_y[k], segments_.to_z[k]};
+      Vec3 from{segments_.from_x[k], segments_.from_y[k], segments_.from_z[k]};
+      Vec3 to{segments_.to_x[k], segments_.to_y[k], segments_.to_z[k]};
+      if (rays_.has_tight_places()) from = segments_.from[k], to = segments_.to[k];
       const Spectrum glass = rays_.glass_transmittance(from, to);
       share[k] = static_cast<float>((glass[0] + glass[1] + glass[2]) / 3);
     }
@@ -117,6 +136,7 @@ class PairSampler {
 
   Vec3 origin_;
   LocalTriangle p_, q_;
+  const SampledTriangle &fine_p_, &fine_q_;
   const RayScene& rays_;
   float lift_;
   SegmentPacket segments_;

@@ -19,10 +19,9 @@ PointOf sensor_points(std::span<const SensorPoint> points, const Vec3& origin, c
 }
 
 PointOf sample_points(const VertexLightmap& lightmap, const RayScene& rays) {
-  const double lift = rays.lift();
-  return [&lightmap, lift](std::size_t i) {
+  return [&lightmap, &rays](std::size_t i) {
     const Vec3 n = lightmap.sample_normal[i];
-    return ReceivingPoint{lightmap.sample_position[i] + n * lift, n};
+    return ReceivingPoint{rays.off_surface(lightmap.sample_position[i], n), n};
   };
 }
 

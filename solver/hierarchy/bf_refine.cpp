@@ -114,7 +114,7 @@ class PatchLinks {
       const Vec3 y = point_on_triangle(patches.corner_positions(b), u[2], u[3]);
       const double kernel = point_kernel(x, patches.normal[a], y, patches.normal[b]);
       if (!(kernel > 0)) continue;
-      shadows.send(x + patches.normal[a] * scene.lift(), y + patches.normal[b] * scene.lift(), kernel);
+      shadows.send(scene.off_surface(x, patches.normal[a]), scene.off_surface(y, patches.normal[b]), kernel);
       open += kernel / kPairsOfLink;
     }
     shadows.trace();

@@ -20,7 +20,7 @@ void send_bundle(const ReceiverArea& area, const Problem& problem, const BundleN
     auto u = net(k, key);
     const ReceiverArea::Member& from = area.pick(u[2]);
     bundle.from[k] = &from;
-    bundle.rays[k] = {point_on_triangle(from.corners, u[2], u[3]) + from.normal * problem.rays.lift(),
+    bundle.rays[k] = {problem.rays.off_surface(point_on_triangle(from.corners, u[2], u[3]), from.normal),
                       cosine_direction(alone ? frame : Frame(from.normal), u[0], u[1])};
   }
   problem.rays.first_hits(problem.patches, bundle.rays, bundle.hits);
@@ -31,7 +31,7 @@ BrightPair bright_pair(const ReceiverArea& area, const Illumination& light, std:
   const auto u = sobol4(number, key);
   auto v = sobol4(number, mix_bits(key));
   const ReceiverArea::Member& member = area.pick(v[1]);
-  const Vec3 from = point_on_triangle(member.corners, u[0], u[1]) + member.normal * light.problem.rays.lift();
+  const Vec3 from = light.problem.rays.off_surface(point_on_triangle(member.corners, u[0], u[1]), member.normal);
   const LightSample s = light.sampler.sample(from, member.normal, u[2], u[3], v[0], true);
   return {from, s.density > 0 ? s.end : from, member.normal, s};
 }

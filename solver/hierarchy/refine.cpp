@@ -58,7 +58,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
   const Problem& problem = light.problem;
   const PatchSet& patches = problem.patches;
   const auto parts = parts_of(corners);
-  const Vec3 lift = normal * problem.rays.lift();
+  const auto lifted = [&](const Vec3& p) { return problem.rays.off_surface(p, normal); };
   const Frame frame(normal);
   const int pairs = light.sampler.has_bright_patches() ? kPairs : 0;
 
@@ -68,7 +68,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
     const auto u = sobol4(static_cast<std::uint32_t>(k), key);
     const Vec3 d = cosine_direction(frame, u[0], u[1]);
     for (std::size_t s = 0; s < kParts; ++s) {
-      const Vec3 x = point_on_triangle(parts[s], u[2], u[3]) + lift;
+      const Vec3 x = lifted(point_on_triangle(parts[s], u[2], u[3]));
       const Hit hit = problem.rays.first_hit(patches, {x, d});
       value[s] = 0;
       if (hit.escaped())
@@ -96,7 +96,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
     for (std::size_t s = 0; s < kParts; ++s)
       for (std::uint32_t k = 0; k < kPairs; ++k) {
         const auto u = sobol4(k, pick), v = sobol4(k, place);
-        const Vec3 from = point_on_triangle(parts[s], v[0], v[1]) + lift;
+        const Vec3 from = lifted(point_on_triangle(parts[s], v[0], v[1]));
         const LightSample sample = light.sampler.sample(from, normal, u[0], u[1], u[2], true);
         if (!(sample.density > 0)) continue;
         const double cos_p = std::max(0.0, dot(normal, normalized(sample.end - from))) / std::numbers::pi;
@@ -115,7 +115,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
     for (int k = 0; k < kPoints; ++k) {
       const auto v = sobol4(static_cast<std::uint32_t>(k), place);
       for (std::size_t s = 0; s < kParts; ++s)
-        value[s] = luminous_mean(light.sampler.delta_light(point_on_triangle(parts[s], v[0], v[1]) + lift, normal, 1,
+        value[s] = luminous_mean(light.sampler.delta_light(lifted(point_on_triangle(parts[s], v[0], v[1])), normal, 1,
                                                            mix_bits(place + static_cast<std::uint64_t>(k))));
       delta.add(value);
     }

@@ -79,7 +79,7 @@ class Gatherer {
     const VertexLightmap& at = mesh_.points();
     GatheredLight mean;
     for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
-      const Vec3 n = at.sample_normal[s], x = at.sample_position[s] + n * light_.problem.rays.lift();
+      const Vec3 n = at.sample_normal[s], x = light_.problem.rays.off_surface(at.sample_position[s], n);
       if (pilots_ && pilot_of_[p] == p && !plans_[p]) plans_[p] = plan_gather(light_, x, n, pattern_, rays);
       static const GatherPlan kNone;
       const auto* plan = pilots_ && plans_[pilot_of_[p]] ? &*plans_[pilot_of_[p]] : &kNone;

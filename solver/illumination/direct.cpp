@@ -132,7 +132,7 @@ class PatchSampler {
     });
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
       const auto u = sobol4(k, key);
-      const Vec3 from = point_on_triangle(corners_, u[0], u[1]) + normal_ * rays.lift();
+      const Vec3 from = rays.off_surface(point_on_triangle(corners_, u[0], u[1]), normal_);
       const auto pick = [&] { return sobol4(k, key + 1)[0]; };
       const ShadowTry to_light = light(from, u[2], u[3], pick);
       if (to_light.irradiance.is_black()) continue;
@@ -264,7 +264,7 @@ Spectrum through_openings(const Illumination& light, std::size_t patch, const Di
     Through found;
     for (int k = 0; k < count; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-      const Vec3 p = point_on_triangle(corners, u[0], u[1]) + n * problem.rays.lift();
+      const Vec3 p = problem.rays.off_surface(point_on_triangle(corners, u[0], u[1]), n);
       const PolygonView polygon(p, n, openings[number].triangles, openings[number].corners);
       if (!(polygon.solid_angle() > 0)) continue;
       const auto [d, solid_angle] = polygon.look(u[2], u[3]);
@@ -300,7 +300,7 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
   Spectrum sum(0.0);
   for (int k = 0; k < options.sky_rays; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-    const Ray ray{point_on_triangle(corners, u[2], u[3]) + frame.n * problem.rays.lift(),
+    const Ray ray{problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
                   cosine_direction(frame, u[0], u[1])};
     const Hit hit = problem.rays.first_hit(problem.patches, ray);
     if (!hit.escaped() ||

@@ -127,7 +127,7 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
   const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
   CLERESTORY_ASSERT(cos_q, >, 0);
   const double weight = kernel * area / probability;
-  return {point + normal * problem_.rays.lift(),
+  return {problem_.rays.off_surface(point, normal),
           glow_[q] * weight,
           probability * r2 / (cos_q * area),
           q,

@@ -22,16 +22,15 @@ double SharpLight::open_irradiance(const Vec3& p, const Vec3& n) const {
 }
 
 SharpLight::Segment SharpLight::to_centre(const Vec3& p, const Vec3& n) const {
-  const double lift = problem_->rays.lift();
-  const Vec3 from = p + n * lift;
-  if (luminaire_) return {from, short_of(luminaire_->position, from, lift)};
+  const Vec3 from = problem_->rays.off_surface(p, n);
+  if (luminaire_) return {from, short_of(luminaire_->position, from, problem_->rays.lift())};
   return {from, from + sun_->direction * (4 * problem_->rays.diameter())};
 }
 
 SharpLight::Segment SharpLight::to_rim(const Vec3& p, const Vec3& n, int k) const {
-  const double lift = problem_->rays.lift(), around = static_cast<double>(k) / kRimRays;
-  const Vec3 from = p + n * lift;
-  if (luminaire_) return {from, short_of(rim_point(*luminaire_, from, around), from, lift)};
+  const double around = static_cast<double>(k) / kRimRays;
+  const Vec3 from = problem_->rays.off_surface(p, n);
+  if (luminaire_) return {from, short_of(rim_point(*luminaire_, from, around), from, problem_->rays.lift())};
   return {from, from + direction_to_sun(*sun_, kRim, around) * (4 * problem_->rays.diameter())};
 }
 

@@ -61,7 +61,7 @@ std::size_t gather_noisy_patches(const Problem& problem, Solution& solution, dou
     RandomStream random(stream_key(seed, kNoisyPatches, i));
     const double u = random.uniform(), v = random.uniform();
     const Vec3 n = patches.normal[i];
-    return ReceivingPoint{point_on_triangle(patches.corner_positions(i), u, v) + n * problem.rays.lift(), n};
+    return ReceivingPoint{problem.rays.off_surface(point_on_triangle(patches.corner_positions(i), u, v), n), n};
   };
   const PointIrradiance gathered = gather_at(light, noisy.size(), point_of, pattern, "noisy patches", monitor);
   for (std::size_t k = 0; k < gathered.done; ++k) solution.E.set(noisy[k], gathered.E[k]);

@@ -15,7 +15,6 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
   const Problem& problem = light.problem;
   const PatchSet& patches = problem.patches;
   const std::size_t n = patches.patch_count();
-  const double lift = problem.rays.lift();
   std::vector<PathSum> sums(n);
   std::vector<unsigned long long> rays(n, 0);
 
@@ -40,7 +39,7 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
           for (int k = done; k < std::min(done + kRound, options.paths); ++k) {
             const auto u = sobol4(static_cast<std::uint32_t>(k), key);
             RandomStream random(key, static_cast<std::uint64_t>(k), 1);
-            const Vec3 start = point_on_triangle(corners, u[2], u[3]) + normal * lift;
+            const Vec3 start = problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), normal);
             const PathStart first = path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), key);
             sums[i].add(trace_path(light, start, normal, first, random, rays[i]));
           }

@@ -111,11 +111,11 @@ void trace(const Problem& problem, const Piece& piece, std::uint64_t seed, std::
   const Frame frame(patches.normal[piece.from]);
   const auto corners = patches.corner_positions(PatchId{piece.from});
   const std::uint64_t key = stream_key(seed, kShots, piece.from);
-  const Vec3 lifted = frame.n * problem.rays.lift();
   for (std::uint32_t k = 0; k < piece.count; ++k) {
     const auto u = sobol4(piece.first + k, key);
-    const Hit hit = problem.rays.first_hit(
-        patches, {point_on_triangle(corners, u[2], u[3]) + lifted, cosine_direction(frame, u[0], u[1])});
+    const Hit hit =
+        problem.rays.first_hit(patches, {problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
+                                         cosine_direction(frame, u[0], u[1])});
     landings[k] = {hit.patch, hit.escaped()};
     if (!passed.empty()) passed[k] = hit.transmittance;
   }

@@ -94,9 +94,8 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     const auto on = patches.scatter(hit.patch, patches.scatters_through(hit.patch) ? random.uniform() : 0);
     throughput *= on.share;
     if (throughput.is_black()) return E;
-    p = hit.position({p, d});
     n = on.normal;
-    p += n * problem.rays.lift();
+    p = problem.rays.off_surface(hit.position({p, d}), n);
     choice = {random.uniform(), random.uniform(), random.uniform()};
     if (!light.openings.empty()) opening = {random.uniform(), random.uniform(), random.uniform()};
     square = {random.uniform(), random.uniform()};

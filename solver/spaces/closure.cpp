@@ -25,8 +25,8 @@ Closure measure_closure(const PatchSet& patches, const RayScene& rays, int rays_
       Spectrum arrives(0.0), escapes(0.0);
       for (int k = 0; k < rays_per_patch; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(seed, kClosureRays, i));
-        const Hit hit = rays.first_hit(patches, {point_on_triangle(corners, u[2], u[3]) + frame.n * rays.lift(),
-                                                 cosine_direction(frame, u[0], u[1])});
+        const Vec3 from = rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n);
+        const Hit hit = rays.first_hit(patches, {from, cosine_direction(frame, u[0], u[1])});
         if (hit.escaped()) escapes += hit.transmittance;
         if (hit.patch.valid()) arrives += hit.transmittance;
         if (k < kNeighbours) neighbours[i][static_cast<std::size_t>(k)] = hit.patch;

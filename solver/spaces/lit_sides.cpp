@@ -73,13 +73,14 @@ Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, in
   // Off the edges: a start that rounding puts behind the neighbour would join the inside of a solid to the room.
   const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
   for (Vec3& corner : corners) corner = centre + (corner - centre) * 0.98;
-  const double lift = problem.rays.lift();
+  const auto lifted = [&](double u, double v) {
+    return problem.rays.off_surface(point_on_triangle(corners, u, v), frame.n);
+  };
   const std::uint64_t key = stream_key(seed, kSideRays, i);
   Seen seen;
   for (int k = 0; k < ray_count; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-    const Hit hit = problem.rays.first_hit(
-        patches, {point_on_triangle(corners, u[2], u[3]) + frame.n * lift, cosine_direction(frame, u[0], u[1])});
+    const Hit hit = problem.rays.first_hit(patches, {lifted(u[2], u[3]), cosine_direction(frame, u[0], u[1])});
     seen.outside = seen.outside || hit.escaped();
     if (!hit.patch.valid()) continue;
     seen.patches.push_back(hit.patch);
@@ -91,8 +92,7 @@ Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, in
       const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
       const Vec3 d = direction_to_sun(sun, u[2], u[3]);
       if (dot(d, frame.n) <= 0) continue;
-      seen.sun =
-          problem.rays.first_hit(patches, {point_on_triangle(corners, u[0], u[1]) + frame.n * lift, d}).escaped();
+      seen.sun = problem.rays.first_hit(patches, {lifted(u[0], u[1]), d}).escaped();
     }
   }
   return seen;
@@ -114,7 +114,7 @@ Found look_for_lights(const Problem& problem, const LightSampler& emitters, std:
   std::array<Vec3, kLuminaireSamples> points;
   for (std::uint32_t k = 0; k < points.size(); ++k) {
     const auto u = sobol4(k, key);
-    points[k] = point_on_triangle(corners, u[0], u[1]) + n * lift;
+    points[k] = problem.rays.off_surface(point_on_triangle(corners, u[0], u[1]), n);
   }
   Found found;
   const std::vector<PlacedLuminaire>& luminaires = problem.lights.luminaires;

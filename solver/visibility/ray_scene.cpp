@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include <embree3/rtcore.h>
 
 #include "solver/model/parallel.h"
+#include "solver/visibility/fine_rays.h"
 #include "solver/visibility/glass_sheet.h"
+#include "solver/visibility/tight_places.h"
 
 namespace clerestory {
 namespace {
@@ -16,6 +19,8 @@ namespace {
 constexpr int kMostReflections = 64;     // of one ray; what is left is lost
 constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of luminaires
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr double kLift = 5e-7;       // of the diameter: a few units in the last place at the rim of the scene
+constexpr double kFineLift = 1e-10;  // of the diameter: meshing keeps nothing apart that is nearer
 
 struct Device {
   RTCDevice handle = rtcNewDevice("set_affinity=0");
@@ -87,9 +92,10 @@ struct RayScene::Impl {
   Device device;
   Surfaces opaque, glass;
   std::vector<GlassTable> glass_kinds;
-  std::vector<std::uint32_t> kind_of_glass;  ///< by primitive of `glass`
+  std::vector<std::uint32_t> kind_of_glass;  ///< by triangle; empty without glass
   struct Mirror {
     Vec3 normal;
+    double offset;        ///< of its own plane
     std::uint32_t plane;  ///< kMostPlanes: of none
     Spectrum reflectance;
   };
@@ -98,6 +104,8 @@ struct RayScene::Impl {
   std::vector<MirrorPlane> planes;
   static constexpr std::uint32_t kNone = 0xffffffff;
   double diameter = 0;
+  TightPlaces tight;
+  std::optional<FineRays> fine;  ///< when any place is tight
 
   void find_mirrors(const PatchSet& patches) {
     for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
@@ -114,12 +122,15 @@ struct RayScene::Impl {
       if (plane == planes.size() && plane < kMostPlanes) planes.push_back({n, dot(n, a)});
       plane = std::min(plane, kMostPlanes);
       mirror_of_triangle[t] = static_cast<std::uint32_t>(mirrors.size());
-      mirrors.push_back({plane < planes.size() ? planes[plane].normal : n, static_cast<std::uint32_t>(plane),
+      const Vec3 normal = plane < planes.size() ? planes[plane].normal : n;
+      mirrors.push_back({normal, dot(normal, a), static_cast<std::uint32_t>(plane),
                          patches.front_material(TriangleId{t}).reflectance});
     }
   }
 
-  double lift() const { return 5e-7 * diameter; }
+  Vec3 off_surface(const Vec3& p, const Vec3& n) const {
+    return p + n * ((tight.contains(p) ? kFineLift : kLift) * diameter);
+  }
 
   const Mirror* mirror_at(TriangleId t) const {
     if (!t.valid() || mirror_of_triangle[t] == kNone) return nullptr;
@@ -128,17 +139,32 @@ struct RayScene::Impl {
 
   /// Of one ray up to the first surface, be it a mirror.
   Hit one_leg(const PatchSet& patches, const Ray& ray) const {
+    if (tight.contains(ray.origin)) return fine_leg(patches, ray);
     auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
     rtcIntersect1(opaque.handle, &c, &r);
     Hit hit;
-    hit.distance = hit.first = r.ray.tfar;
+    hit.distance = hit.first = double{r.ray.tfar};
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       hit.triangle = TriangleId{opaque.of_primitive[r.hit.primID]};
+      if (tight.is_tight(hit.triangle)) return fine_leg(patches, ray);
       const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
-      hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, r.hit.u, r.hit.v);
+      hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{r.hit.u}, double{r.hit.v});
     }
     if (!glass.of_primitive.empty()) hit.transmittance = through_glass(ray.origin, ray.direction, hit.distance);
+    return hit;
+  }
+
+  /// The same where float cannot tell what is first.
+  Hit fine_leg(const PatchSet& patches, const Ray& ray) const {
+    Hit hit;
+    hit.distance = hit.first = std::numeric_limits<double>::infinity();
+    if (const auto met = fine->first(ray.origin, ray.direction, hit.distance)) {
+      hit.distance = hit.first = met->distance;
+      hit.triangle = met->triangle;
+      hit.patch = patches.patch_at(hit.triangle, met->front ? kFront : kBack, met->u, met->v);
+    }
+    if (!glass.of_primitive.empty()) hit.transmittance = through_fine_glass(ray.origin, ray.direction, hit.distance);
     return hit;
   }
 
@@ -150,9 +176,9 @@ struct RayScene::Impl {
       if (!mirror) return;
       const double along = dot(mirror->normal, ray.direction);
       const Vec3 n = along < 0 ? mirror->normal : -mirror->normal;
-      ray = {hit.position(first) + n * lift(), ray.direction - mirror->normal * (2 * along)};
+      ray = {off_surface(hit.position(first), n), ray.direction - mirror->normal * (2 * along)};
       const Spectrum so_far = hit.transmittance * mirror->reflectance;
-      const float to_first = hit.first;
+      const double to_first = hit.first;
       hit = one_leg(patches, ray);
       hit.first = to_first;
       hit.transmittance *= so_far;
@@ -162,6 +188,7 @@ struct RayScene::Impl {
   }
 
   void tabulate_glass(const PatchSet& patches) {
+    if (!glass.of_primitive.empty()) kind_of_glass.assign(patches.triangle_count(), 0);
     std::vector<std::uint32_t> kind_of_material(patches.materials.size(), 0xffffffff);
     for (const std::uint32_t t : glass.of_primitive) {
       const MaterialId material = patches.side_material[t][kFront];
@@ -170,12 +197,12 @@ struct RayScene::Impl {
         kind = static_cast<std::uint32_t>(glass_kinds.size());
         glass_kinds.emplace_back(patches.materials[material].transmittance);
       }
-      kind_of_glass.push_back(kind);
+      kind_of_glass[t] = kind;
     }
   }
 
   /// Product of the transmittances of the glass met before `far`, each at the angle at which it is met. direction:
-  /// unit.
+  /// unit. Neither end is in a tight place.
   Spectrum through_glass(const Vec3& origin, const Vec3& direction, double far) const {
     Spectrum share(1.0);
     auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
@@ -184,12 +211,24 @@ struct RayScene::Impl {
       RTCRayHit r = ray_hit(origin, direction, near_t, far_t);
       rtcIntersect1(glass.handle, &c, &r);
       if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
+      const TriangleId met{glass.of_primitive[r.hit.primID]};
+      if (tight.is_tight(met)) return through_fine_glass(origin, direction, far);
       const Vec3 n(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
-      share *= glass_kinds[kind_of_glass[r.hit.primID]].at(dot(n, direction) / length(n));
+      share *= glass_kinds[kind_of_glass[met]].at(dot(n, direction) / length(n));
       near_t = std::max(r.ray.tfar + step, std::nextafter(r.ray.tfar, kInfinity));  // panes count once at shared edges
     }
     return share;
   }
+  /// The same by double precision.
+  Spectrum through_fine_glass(const Vec3& origin, const Vec3& direction, double far) const {
+    Spectrum share(1.0);
+    for (const FineRays::Met& met : fine->glass(origin, direction, far))
+      share *= glass_kinds[kind_of_glass[met.triangle]].at(dot(fine->normal(met.triangle), direction));
+    return share;
+  }
+
+  /// Whether nothing opaque blocks a segment of which an end lies in a tight place.
+  bool fine_visible(const Vec3& from, const Vec3& to) const { return !fine->first(from, to - from, 1).has_value(); }
 };
 
 RayScene::RayScene(const PatchSet& patches) : impl_(std::make_unique<Impl>()) {
@@ -205,6 +244,8 @@ RayScene::RayScene(const PatchSet& patches) : impl_(std::make_unique<Impl>()) {
   });
   impl_->tabulate_glass(patches);
   impl_->find_mirrors(patches);
+  impl_->tight = TightPlaces(patches, lift());
+  if (impl_->tight.any()) impl_->fine.emplace(patches, impl_->diameter);
 }
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
@@ -213,7 +254,10 @@ RayScene::~RayScene() = default;
 bool RayScene::has_mirrors() const { return !impl_->mirrors.empty(); }
 const std::vector<MirrorPlane>& RayScene::mirrors() const { return impl_->planes; }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
-double RayScene::lift() const { return impl_->lift(); }
+double RayScene::lift() const { return kLift * impl_->diameter; }
+Vec3 RayScene::off_surface(const Vec3& p, const Vec3& n) const { return impl_->off_surface(p, n); }
+bool RayScene::has_tight_places() const { return impl_->tight.any(); }
+bool RayScene::is_tight(const Vec3& p) const { return impl_->tight.contains(p); }
 double RayScene::diameter() const { return impl_->diameter; }
 
 void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -237,12 +281,19 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
     for (std::size_t k = 0; k < count; ++k) {
       Hit& hit = hits[first + k];
       hit = Hit{};
-      hit.distance = hit.first = packet.ray.tfar[k];
-      if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
+      hit.distance = hit.first = double{packet.ray.tfar[k]};
+      if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
         hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
+      if (impl_->tight.is_tight(hit.triangle) || impl_->tight.contains(rays[first + k].origin)) {
+        hit = impl_->fine_leg(patches, rays[first + k]);
+        if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], hit);
+        continue;
+      }
+      if (!hit.escaped()) {
         const float along = packet.hit.Ng_x[k] * packet.ray.dir_x[k] + packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
                             packet.hit.Ng_z[k] * packet.ray.dir_z[k];
-        hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, packet.hit.u[k], packet.hit.v[k]);
+        hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{packet.hit.u[k]},
+                                     double{packet.hit.v[k]});
       }
       if (has_glass()) {
         const Ray& ray = rays[first + k];
@@ -260,10 +311,19 @@ Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray) const {
 }
 
 double RayScene::first_surface(const Ray& ray) const {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  const auto finely = [&] {
+    const auto met = impl_->fine->first(ray.origin, ray.direction, kFar);
+    return met ? met->distance : kFar;
+  };
+  if (is_tight(ray.origin)) return finely();
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
   rtcIntersect1(impl_->opaque.handle, &c, &r);
-  return r.ray.tfar;
+  if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
+      impl_->tight.is_tight(TriangleId{impl_->opaque.of_primitive[r.hit.primID]}))
+    return finely();
+  return double{r.ray.tfar};
 }
 
 std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) const {
@@ -284,10 +344,15 @@ std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) 
   rtcOccluded16(valid, impl_->opaque.handle, &c, &packet);
   unsigned visible = 0;
   for (unsigned k = 0; k < 16; ++k) visible |= (packet.tfar[k] >= 0 ? 1u : 0u) << k;
+  if (has_tight_places())
+    for (unsigned k = 0; k < 16; ++k)
+      if (((active >> k) & 1) && (is_tight(s.from[k]) || is_tight(s.to[k])))
+        visible = (visible & ~(1u << k)) | (impl_->fine_visible(s.from[k], s.to[k]) ? 1u << k : 0u);
   return static_cast<std::uint16_t>(visible & active);
 }
 
 bool RayScene::visible(const Vec3& from, const Vec3& to) const {
+  if (is_tight(from) || is_tight(to)) return impl_->fine_visible(from, to);
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   RTCRayHit r = ray_hit(from, to - from, 0, 1);
   rtcOccluded1(impl_->opaque.handle, &c, &r.ray);
@@ -300,23 +365,36 @@ Spectrum RayScene::transmittance(const Vec3& from, const Vec3& to) const {
 
 Spectrum RayScene::transmittance_by_mirror(const Vec3& from, const Vec3& image, std::uint32_t mirror) const {
   const MirrorPlane& plane = impl_->planes[mirror];
-  const double height = dot(plane.normal, from) - plane.offset, beyond = dot(plane.normal, image) - plane.offset;
-  if (!(height * beyond < 0)) return Spectrum(0.0);
-  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  RTCRayHit r = ray_hit(from, image - from, 0, 1);
-  rtcIntersect1(impl_->opaque.handle, &c, &r);
-  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Spectrum(0.0);
-  const auto* met = impl_->mirror_at(TriangleId{impl_->opaque.of_primitive[r.hit.primID]});
+  if (!((dot(plane.normal, from) - plane.offset) * (dot(plane.normal, image) - plane.offset) < 0)) return Spectrum(0.0);
+  const auto finely = [&] {
+    const auto met = impl_->fine->first(from, image - from, 1);
+    return met ? met->triangle : TriangleId{};
+  };
+  TriangleId first;
+  if (is_tight(from)) {
+    first = finely();
+  } else {
+    auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    RTCRayHit r = ray_hit(from, image - from, 0, 1);
+    rtcIntersect1(impl_->opaque.handle, &c, &r);
+    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) first = TriangleId{impl_->opaque.of_primitive[r.hit.primID]};
+    if (impl_->tight.is_tight(first)) first = finely();
+  }
+  const auto* met = impl_->mirror_at(first);
   if (!met || met->plane != mirror) return Spectrum(0.0);
+  const double height = dot(met->normal, from) - met->offset, beyond = dot(met->normal, image) - met->offset;
   const Vec3 x = from + (image - from) * (height / (height - beyond));
-  const Vec3 lifted = x + plane.normal * (height > 0 ? lift() : -lift());
-  return met->reflectance * glass_transmittance(from, x) * transmittance(lifted, plane.image_of(image));
+  const Vec3 lifted = off_surface(x, height > 0 ? met->normal : -met->normal);
+  return met->reflectance * glass_transmittance(from, lifted) * transmittance(lifted, plane.image_of(image));
 }
 
 Spectrum RayScene::glass_transmittance(const Vec3& from, const Vec3& to) const {
   if (!has_glass()) return Spectrum(1.0);
   const double distance = length(to - from);
-  return distance > 0 ? impl_->through_glass(from, (to - from) / distance, distance) : Spectrum(1.0);
+  if (!(distance > 0)) return Spectrum(1.0);
+  const Vec3 d = (to - from) / distance;
+  return is_tight(from) || is_tight(to) ? impl_->through_fine_glass(from, d, distance)
+                                        : impl_->through_glass(from, d, distance);
 }
 
 }  // namespace clerestory

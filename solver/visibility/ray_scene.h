@@ -12,7 +12,7 @@
 namespace clerestory {
 
 struct Ray {
-  Vec3 origin;     ///< already lifted off its surface, see RayScene::lift() [m]
+  Vec3 origin;     ///< already off its surface, see RayScene::off_surface() [m]
   Vec3 direction;  ///< unit
 };
 
@@ -20,19 +20,17 @@ struct Ray {
 struct Hit {
   PatchId patch;                ///< the side it met; invalid when it escaped, or met a side that takes no part
   TriangleId triangle;          ///< invalid when it escaped
-  float distance = 0;           ///< along the unit direction [m]
+  double distance = 0;          ///< along the unit direction [m]
   Spectrum transmittance{1.0};  ///< of glass and mirrors on the way
 
-  float first = 0;         ///< distance to the first surface, be it a mirror [m]
+  double first = 0;        ///< distance to the first surface, be it a mirror [m]
   bool reflected = false;  ///< by mirrors on the way
   Ray leg;                 ///< when reflected: the last part of the way; `distance` is its length then
 
   bool escaped() const { return !triangle.valid(); }
   /// Direction [unit] in which `ray` arrived here, and where that is.
   const Vec3& direction(const Ray& ray) const { return reflected ? leg.direction : ray.direction; }
-  Vec3 position(const Ray& ray) const {
-    return (reflected ? leg.origin : ray.origin) + direction(ray) * static_cast<double>(distance);
-  }
+  Vec3 position(const Ray& ray) const { return (reflected ? leg.origin : ray.origin) + direction(ray) * distance; }
 };
 
 /// A plane with mirrors in it.
@@ -44,15 +42,17 @@ struct MirrorPlane {
   Vec3 image_of_direction(const Vec3& d) const { return d - normal * (2 * dot(normal, d)); }
 };
 
-/// Sixteen segments for one packet, as separate coordinates; both ends already lifted off their surfaces.
+/// Sixteen segments for one packet, as separate coordinates; both ends already off their surfaces.
 struct SegmentPacket {
   alignas(64) std::array<float, 16> from_x, from_y, from_z, to_x, to_y, to_z;
+  std::array<Vec3, 16> from, to;  ///< the same; asked for where RayScene::has_tight_places()
 
-  void set(int lane, const Vec3& from, const Vec3& to) {
+  void set(int lane, const Vec3& start, const Vec3& end) {
     const auto k = static_cast<std::size_t>(lane);
-    from_x[k] = static_cast<float>(from.x), from_y[k] = static_cast<float>(from.y);
-    from_z[k] = static_cast<float>(from.z), to_x[k] = static_cast<float>(to.x);
-    to_y[k] = static_cast<float>(to.y), to_z[k] = static_cast<float>(to.z);
+    from[k] = start, to[k] = end;
+    from_x[k] = static_cast<float>(start.x), from_y[k] = static_cast<float>(start.y);
+    from_z[k] = static_cast<float>(start.z), to_x[k] = static_cast<float>(end.x);
+    to_y[k] = static_cast<float>(end.y), to_z[k] = static_cast<float>(end.z);
   }
 };
 
@@ -95,9 +95,18 @@ class RayScene {
   bool has_mirrors() const;
   /// The planes of mirrors, no more than 64 of them: rays are reflected by all, luminaires have images in these.
   const std::vector<MirrorPlane>& mirrors() const;
-  /// Distance by which ray ends are lifted along their surface's normal, so that rounding to float cannot put them
-  /// behind it: a few units in the last place at the rim of the scene [m].
+
+  /// Where a ray starts or ends at the place p of a surface with unit normal n on the ray's side: lifted so far that
+  /// rounding cannot put it behind the surface, and never so far that it passes another. That is lift() where no other
+  /// surface is near; in tight places (tight_places.h) 1e-10 of the diagonal, and rays that start, end or land there
+  /// are traced in double precision (fine_rays.h).
+  Vec3 off_surface(const Vec3& p, const Vec3& n) const;
+  /// The distance by which ray ends are lifted where there is room: 5e-7 of the diagonal, a few units in the last place
+  /// at the rim of the scene [m].
   double lift() const;
+  /// Whether p lies where surfaces are too near each other for that.
+  bool is_tight(const Vec3& p) const;
+  bool has_tight_places() const;
   /// Length of the diagonal of the bounding box [m].
   double diameter() const;
 

@@ -20,36 +20,33 @@ class ShadowRays {
  public:
   ShadowRays(const RayScene& rays, Arrive arrive) : rays_(rays), arrive_(std::move(arrive)) {}
 
-  /// Both ends are lifted off their surfaces.
+  /// Both ends are off their surfaces.
   void send(const Vec3& from, const Vec3& to, const Load& load) {
     packet_.set(static_cast<int>(count_), from, to);
-    shots_[count_++] = {from, to, load};
+    loads_[count_++] = load;
     if (count_ == kLanes) trace();
   }
   /// Lets the rest arrive; call it at the end, and wherever a coherent group ends.
   void trace() {
     unsigned visible = 0;
     if (count_ < kFewest)
-      for (std::size_t k = 0; k < count_; ++k) visible |= (rays_.visible(shots_[k].from, shots_[k].to) ? 1u : 0u) << k;
+      for (std::size_t k = 0; k < count_; ++k)
+        visible |= (rays_.visible(packet_.from[k], packet_.to[k]) ? 1u : 0u) << k;
     else
       visible = rays_.visible16(packet_, static_cast<std::uint16_t>((1u << count_) - 1));
     for (; visible; visible &= visible - 1) {
-      const Shot& shot = shots_[static_cast<std::size_t>(std::countr_zero(visible))];
-      arrive_(shot.load, shot.from, shot.to);
+      const auto k = static_cast<std::size_t>(std::countr_zero(visible));
+      arrive_(loads_[k], packet_.from[k], packet_.to[k]);
     }
     count_ = 0;
   }
 
  private:
   static constexpr std::size_t kLanes = 16, kFewest = 3;  ///< fewer cost less as single rays
-  struct Shot {
-    Vec3 from, to;
-    Load load;
-  };
   const RayScene& rays_;
   Arrive arrive_;
   SegmentPacket packet_;
-  std::array<Shot, kLanes> shots_;
+  std::array<Load, kLanes> loads_;
   std::size_t count_ = 0;
 };
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "meshing/box_tree.h"
 #include "meshing/build_patches.h"
+#include "solver/model/box_tree.h"
 
 namespace clerestory::testing {
 

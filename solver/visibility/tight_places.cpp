@@ -1,0 +1,140 @@
+#include "solver/visibility/tight_places.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/model/parallel.h"
+
+namespace clerestory {
+namespace {
+
+constexpr double kReach = 2;        ///< lifts: what is further apart than that a lifted end cannot pass
+constexpr double kBesideEdge = 10;  ///< reaches: surfaces that meet there at atan(1 / 10) or more are far enough apart
+constexpr double kShareOfWidth = 0.03;  ///< of a triangle's inner radius that may be worse, where it is small
+constexpr double kRounding = 0.1;       ///< reaches: what float moves a point sideways
+
+/// The space over and under a triangle, up to `reach` from it, short of its edges by `inset`.
+class Prism {
+ public:
+  Prism(const std::array<Vec3, 3>& corner, double reach) : corner_(corner), reach_(reach) {
+    const Vec3 n = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double twice_area = length(n);
+    normal_ = normalized(n);
+    double around = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 edge = corner[(k + 1) % 3] - corner[k];
+      inward_[k] = normalized(cross(normal_, edge));
+      around += length(edge);
+    }
+    inset_ = std::min(kBesideEdge * reach, kShareOfWidth * twice_area / around) - kRounding * reach;
+  }
+  bool has_area() const { return length(normal_) > 0.5; }
+
+  /// Whether the triangle comes into it, in another plane or upside down.
+  bool meets(const std::array<Vec3, 3>& other) const {
+    double low = Box::kHuge, high = -Box::kHuge;
+    for (const Vec3& p : other) {
+      const double h = dot(normal_, p - corner_[0]);
+      low = std::min(low, h), high = std::max(high, h);
+    }
+    if (low > reach_ || high < -reach_) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (depth(k, other[0]) < inset_ && depth(k, other[1]) < inset_ && depth(k, other[2]) < inset_) return false;
+    return !clip(other).empty();
+  }
+
+ private:
+  double depth(std::size_t edge, const Vec3& p) const { return dot(inward_[edge], p - corner_[edge]); }
+
+  std::vector<Vec3> clip(const std::array<Vec3, 3>& other) const {
+    std::vector<Vec3> polygon(other.begin(), other.end()), rest;
+    const auto keep = [&](const auto& inside) {
+      rest.clear();
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+        const double a = inside(p), b = inside(q);
+        if (a >= 0) rest.push_back(p);
+        if ((a < 0) != (b < 0)) rest.push_back(p + (q - p) * (a / (a - b)));
+      }
+      polygon.swap(rest);
+    };
+    keep([&](const Vec3& p) { return reach_ - dot(normal_, p - corner_[0]); });
+    keep([&](const Vec3& p) { return reach_ + dot(normal_, p - corner_[0]); });
+    for (std::size_t k = 0; k < 3; ++k) keep([&](const Vec3& p) { return depth(k, p) - inset_; });
+    return polygon;
+  }
+
+  std::array<Vec3, 3> corner_;
+  double reach_, inset_;
+  Vec3 normal_;
+  std::array<Vec3, 3> inward_;  ///< unit normals of the edges within the plane
+};
+
+/// Square of the distance from p to a triangle. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.
+double distance2(const Vec3& p, const std::array<Vec3, 3>& t) {
+  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
+  const auto to = [&](const Vec3& q) { return dot(p - q, p - q); };
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return to(t[0]);
+  const Vec3 bp = p - t[1];
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return to(t[1]);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return to(t[0] + ab * (d1 / (d1 - d3)));
+  const Vec3 cp = p - t[2];
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return to(t[2]);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return to(t[0] + ac * (d2 / (d2 - d6)));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return to(t[1] + (t[2] - t[1]) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
+  const Vec3 n = cross(ab, ac);
+  const double h = dot(n, ap);
+  return h * h / dot(n, n);
+}
+
+}  // namespace
+
+TightPlaces::TightPlaces(const PatchSet& patches, double lift) : reach_(kReach * lift) {
+  const std::size_t count = patches.triangle_count();
+  const auto corners_of = [&](std::size_t t) {
+    const auto& c = patches.corners[t];
+    return std::array{patches.vertices[c[0]], patches.vertices[c[1]], patches.vertices[c[2]]};
+  };
+  const auto box_of = [&](std::size_t t) { return Box::around(corners_of(t)).grown(reach_); };
+  const BoxTree tree(count, box_of);
+  std::vector<std::uint8_t> tight(count);
+  parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t t = tree.order()[k];
+      const Prism prism(corners_of(t), reach_);
+      if (!prism.has_area()) continue;
+      tree.visit(box_of(t), [&](std::uint32_t other) {
+        if (other != t && !tight[t] && prism.meets(corners_of(other))) tight[t] = 1;
+      });
+    }
+  });
+  std::vector<Box> boxes;
+  for (std::size_t t = 0; t < count; ++t)
+    if (tight[t]) {
+      triangles_.push_back(corners_of(t));
+      boxes.push_back(box_of(t));
+    }
+  if (triangles_.empty()) return;
+  tight_ = std::move(tight);
+  tree_.emplace(triangles_.size(), StoredBoxes{std::move(boxes)});
+}
+
+bool TightPlaces::contains(const Vec3& p) const {
+  if (!tree_) return false;
+  bool found = false;
+  tree_->visit_if(
+      [&](const Box& box) {
+        return !found && p.x >= box.lower.x && p.x <= box.upper.x && p.y >= box.lower.y && p.y <= box.upper.y &&
+               p.z >= box.lower.z && p.z <= box.upper.z;
+      },
+      [&](std::uint32_t k) { found = found || distance2(p, triangles_[k]) <= reach_ * reach_; });
+  return found;
+}
+
+}  // namespace clerestory

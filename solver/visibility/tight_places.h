@@ -1,0 +1,36 @@
+#pragma once
+// Where surfaces lie too near each other for rays in float.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "solver/model/box_tree.h"
+#include "solver/model/patch_set.h"
+
+namespace clerestory {
+
+/// A triangle is tight when the end of a ray that is lifted off it by `lift` could be beyond another surface: when one
+/// comes within two lifts of it, above or below, and not only beside an edge where surfaces meet at more than about 6
+/// degrees. Panels close below a ceiling, sheets before each other, the apex of a wedge, facets where a sphere touches
+/// a plane; and triangles no larger than a few lifts, which float cannot place.
+///
+/// Cost: O(T log T), about 1 us a triangle and core.
+class TightPlaces {
+ public:
+  TightPlaces() = default;
+  TightPlaces(const PatchSet& patches, double lift);
+
+  bool any() const { return tree_.has_value(); }
+  bool is_tight(TriangleId t) const { return t.valid() && !tight_.empty() && tight_[t]; }
+  /// Whether p lies within two lifts of a tight triangle.
+  bool contains(const Vec3& p) const;
+
+ private:
+  double reach_ = 0;
+  std::vector<std::uint8_t> tight_;             ///< T; empty: none is
+  std::vector<std::array<Vec3, 3>> triangles_;  ///< the tight ones
+  std::optional<BoxTree<StoredBoxes>> tree_;    ///< of their boxes, grown by the reach
+};
+
+}  // namespace clerestory

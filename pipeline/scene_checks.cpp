@@ -7,8 +7,11 @@
 #include "io/scene_file/nearest_name.h"
 #include "pipeline/wording.h"
 #include "solver/gather/gather.h"
+#include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
+#include "solver/lights/near_planes.h"
 #include "solver/model/error.h"
+#include "solver/model/random_stream.h"
 
 namespace clerestory {
 namespace {
@@ -26,12 +29,36 @@ double open_share(const Problem& problem, const Vec3& position) {
   return double(escaped) / kDirections;
 }
 
-void warn_about_luminaire(const Problem& problem, const std::string& name, const Vec3& position, Observer& observer) {
-  const double open = open_share(problem, position);
-  if (open <= 0.6) return;
-  const Vec3 p = position + problem.patches.origin;
-  observer.warn("luminaire '" + name + "' at (" + rounded(p.x, 4) + ", " + rounded(p.y, 4) + ", " + rounded(p.z, 4) +
-                ") stands outside every room: " + percent(open) + " of the directions around it meet nothing.");
+/// Name of the solid that all light of a luminaire ends in, or nothing: its rays meet the inner sides only of surfaces
+/// that are a small part of the model.
+std::string solid_around(const Problem& problem, const PlacedLuminaire& luminaire) {
+  constexpr std::uint32_t kRays = 512;
+  constexpr double kSmallPart = 0.25;  // of all area; a room whose faces are wound outwards is more
+  const PatchSet& patches = problem.patches;
+  const Beam beam = beam_of(luminaire);
+  std::vector<std::size_t> met;
+  for (std::uint32_t k = 0; k < kRays; ++k) {
+    const auto u = sobol4(k, 3);
+    const Vec3 d = direction_in(beam, u[0], u[1]);
+    if (intensity(luminaire, d).is_black()) continue;
+    const Hit hit = problem.rays.first_hit(patches, {ray_start(luminaire, luminaire.position, d), d});
+    if (hit.escaped() || hit.reflected) return {};
+    if (hit.patch.valid() && patches.side[hit.patch] != kBack) return {};
+    met.push_back(patches.side_surface[hit.triangle][kBack]);
+  }
+  if (met.empty()) return {};
+  std::vector<std::size_t> surfaces = met;
+  std::ranges::sort(surfaces);
+  surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
+  double own = 0, all = 0;
+  for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
+    const auto& c = patches.corners[t];
+    const Vec3& a = patches.vertices[c[0]];
+    const double area = length(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a)) / 2;
+    all += area;
+    if (std::ranges::binary_search(surfaces, std::size_t{patches.side_surface[t][kBack]})) own += area;
+  }
+  return own < kSmallPart * all ? patches.surfaces[met.front()] : std::string();
 }
 
 /// "rows 3, 7, 8 and 12 more"
@@ -41,6 +68,16 @@ std::string row_list(const std::vector<std::size_t>& rows) {
   for (std::size_t i = 0; i < std::min(rows.size(), kShown); ++i) text += (i ? ", " : "") + std::to_string(rows[i] + 1);
   if (rows.size() > kShown) text += " and " + grouped(rows.size() - kShown) + " more";
   return text;
+}
+
+void warn_about_luminaire(const Problem& problem, const PlacedLuminaire& luminaire, Observer& observer) {
+  const Vec3 p = luminaire.position + problem.patches.origin;
+  const std::string who = "luminaire '" + luminaire.name + "' at (" + rounded(p.x, 4) + ", " + rounded(p.y, 4) + ", " +
+                          rounded(p.z, 4) + ") stands ";
+  if (const double open = open_share(problem, luminaire.position); open > 0.6)
+    observer.warn(who + "outside every room: " + percent(open) + " of the directions around it meet nothing.");
+  else if (const std::string solid = solid_around(problem, luminaire); !solid.empty())
+    observer.warn(who + "inside of the solid '" + solid + "': all of its light is absorbed in there.");
 }
 
 std::string why_unused(const std::string& pattern, const Scene& scene) {
@@ -84,7 +121,7 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
 
 void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Observer& observer) {
   for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
-    if (luminaire.mirror == kNoMirror) warn_about_luminaire(problem, luminaire.name, luminaire.position, observer);
+    if (luminaire.mirror == kNoMirror) warn_about_luminaire(problem, luminaire, observer);
   const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
   if (!buried.empty())
     observer.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +

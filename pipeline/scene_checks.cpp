@@ -8,8 +8,11 @@
 #include "io/text.h"
 #include "pipeline/wording.h"
 #include "solver/gather/gather.h"
+#include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
+#include "solver/lights/near_planes.h"
 #include "solver/model/error.h"
+#include "solver/model/random_stream.h"
 
 namespace clerestory {
 namespace {
@@ -26,6 +29,38 @@ double open_share(const Problem& problem, const Vec3& position, int directions) 
   return double(escaped) / directions;
 }
 
+/// Name of the solid that all light of a luminaire ends in, or nothing: its rays meet the inner sides only of surfaces
+/// that are a small part of the model.
+std::string solid_around(const Problem& problem, const PlacedLuminaire& luminaire) {
+  constexpr std::uint32_t kRays = 512;
+  constexpr double kSmallPart = 0.25;  // of all area; a room whose faces are wound outwards is more
+  const PatchSet& patches = problem.patches;
+  const Beam beam = beam_of(luminaire);
+  std::vector<std::size_t> met;
+  for (std::uint32_t k = 0; k < kRays; ++k) {
+    const auto u = sobol4(k, 3);
+    const Vec3 d = direction_in(beam, u[0], u[1]);
+    if (intensity(luminaire, d).is_black()) continue;
+    const Hit hit = problem.rays.first_hit(patches, {ray_start(luminaire, luminaire.position, d), d});
+    if (hit.escaped() || hit.reflected) return {};
+    if (hit.patch.valid() && patches.side[hit.patch] != kBack) return {};
+    met.push_back(patches.side_surface[hit.triangle][kBack]);
+  }
+  if (met.empty()) return {};
+  std::vector<std::size_t> surfaces = met;
+  std::ranges::sort(surfaces);
+  surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
+  double own = 0, all = 0;
+  for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
+    const auto& c = patches.corners[t];
+    const Vec3& a = patches.vertices[c[0]];
+    const double area = length(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a)) / 2;
+    all += area;
+    if (std::ranges::binary_search(surfaces, std::size_t{patches.side_surface[t][kBack]})) own += area;
+  }
+  return own < kSmallPart * all ? patches.surfaces[met.front()] : std::string();
+}
+
 /// The first of those that stand in the open one by one, the others by their number; of very many, each is looked at in
 /// few directions before it is looked at in all.
 void warn_about_luminaires(const Problem& problem, Observer& observer) {
@@ -37,18 +72,22 @@ void warn_about_luminaires(const Problem& problem, Observer& observer) {
   const int first_look = static_cast<int>(std::clamp<std::size_t>(kMostRays / luminaires.size(), 8, kDirections));
   std::size_t shown = 0, more = 0;
   for (const PlacedLuminaire& luminaire : luminaires) {
-    if (luminaire.mirror != kNoMirror || open_share(problem, luminaire.position, first_look) <= kOpen) continue;
-    if (shown == kShown) {
+    if (luminaire.mirror != kNoMirror) continue;
+    const bool may_be_open = open_share(problem, luminaire.position, first_look) > kOpen;
+    if (may_be_open && shown == kShown) {
       ++more;
       continue;
     }
-    const double open = open_share(problem, luminaire.position, kDirections);
-    if (open <= kOpen) continue;
+    const double open = may_be_open ? open_share(problem, luminaire.position, kDirections) : 0;
+    const bool look_around = open <= kOpen && first_look == kDirections && shown < kShown;
+    const std::string solid = look_around ? solid_around(problem, luminaire) : std::string();
+    if (open <= kOpen && solid.empty()) continue;
     ++shown;
     const Vec3 p = luminaire.position + problem.patches.origin;
     observer.warn("luminaire '" + luminaire.name + "' at (" + rounded(p.x, 4) + ", " + rounded(p.y, 4) + ", " +
-                  rounded(p.z, 4) + ") stands outside every room: " + percent(open) +
-                  " of the directions around it meet nothing.");
+                  rounded(p.z, 4) + ") stands " +
+                  (open > kOpen ? "outside every room: " + percent(open) + " of the directions around it meet nothing."
+                                : "inside of the solid '" + solid + "': all of its light is absorbed in there."));
   }
   if (more > 0)
     observer.warn((first_look < kDirections ? "about " : "") + grouped(more) +

@@ -6,6 +6,7 @@
 #include "pipeline/prepare.h"
 #include "pipeline/repeat_to_target.h"
 #include "pipeline/require_valid.h"
+#include "pipeline/result_checks.h"
 #include "pipeline/scene_checks.h"
 #include "solver/evaluate/sensor_planes.h"
 #include "solver/run/accuracy.h"
@@ -26,7 +27,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
   const SensorPlanes sensors = planes_of(scene.sensors);
 
   bool first = true;
-  return repeat_to_target(
+  Solved best = repeat_to_target(
       asked, observer, [&](Settings& settings, const Monitor& monitor, StageSeconds& seconds) -> std::optional<Solved> {
         // Scene -> patches, rays, lights, sides that light can reach, points to show it on.
         Solved out;
@@ -71,6 +72,8 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         out.lit_sides = std::move(lit_sides);
         return out;
       });
+  warn_about_result(best, observer);
+  return best;
 }
 
 Solved solve_scene(const Scene& scene, const Settings& settings) {

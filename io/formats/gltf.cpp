@@ -200,7 +200,7 @@ class GltfReader {
     return webp < file_.list("images").size() ? webp : index(textures[texture], "source");
   }
 
-  ModelTexture read_image(std::size_t index) const {
+  ModelTexture read_image(std::size_t index) {
     const Json& images = file_.list("images");
     const std::string where = text("images[", index, "]");
     if (index >= images.size() || !images[index].is_object()) return {"a texture that the file does not hold", {}, {}};
@@ -214,7 +214,7 @@ class GltfReader {
       if (!is_inside) {
         texture.file = find_file(folder_, uri).value_or(find_file(folder_, percent_decoded(uri)).value_or(""));
       } else if (!uri.empty()) {
-        texture.bytes = file_.uri_bytes(uri, where);
+        texture.bytes = file_.uri_bytes(image["uri"].get_ref<const std::string&>(), where);
       } else if (image.contains("bufferView")) {
         texture.bytes = file_.view_bytes(whole_number(file_, image, "bufferView", 0, where));
       }

@@ -294,15 +294,19 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
     double last = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [direction, per_share] = sights[k];
-      weight[k] = dot(direction, n) / kPi * per_share * plan[first + k].share();
+      weight[k] = std::max(0.0, dot(direction, n)) / kPi * per_share * plan[first + k].share();
       const Spectrum E = (values[k] - plan.mean) * weight[k];
       sum.E += E;
       if (k % 2 == 1) sum.variance += (luminous_mean(E) - last) * (luminous_mean(E) - last);
       last = luminous_mean(E);
-      if (row) by_rays += values[k] * weight[k];
+      by_rays += values[k] * weight[k];
     }
     if (row) add_to_row(met, weight, *row);
   }
+  // Where less is seen of an area than the plan knew, its rays may take away a little more than the mean brought; they
+  // alone give what is left.
+  sum.E = {sum.E[0] < 0 ? by_rays[0] : sum.E[0], sum.E[1] < 0 ? by_rays[1] : sum.E[1],
+           sum.E[2] < 0 ? by_rays[2] : sum.E[2]};
   if (row) {
     const Spectrum gain = gain_of_area(sum.E, by_rays);
     for (RowEntry& e : std::span(*row).subspan(begin)) e.scale(gain);
@@ -433,7 +437,6 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
     at.delta_light = light.sampler.delta_light(p, n, pattern.quality().sun_rays, pattern.sun_key(), row);
     at.E += at.delta_light;
   }
-  // Where it is all but dark, what differs from a plan's mean may leave a little less than nothing.
   CLERESTORY_ASSERT(all_finite(at.E), ==, true);
   return at;
 }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "solver/gather/gather_point.h"
+#include "solver/lights/luminaire.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
 
@@ -33,6 +35,16 @@ std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
   return worth;
 }
 
+/// What suns give at most, and luminaires whose whole flux falls on one of the smallest elements: a point that a
+/// luminaire touches must not outshine the room [W/m2].
+double most_delta_light(const Problem& problem, double shortest_edge) {
+  double flux = 0, sun = 0;
+  for (const Luminaire& luminaire : problem.lights.luminaires) flux += luminous_mean(power(luminaire));
+  for (const Sun& s : problem.lights.suns) sun += luminous_mean(s.normal_irradiance);
+  const double smallest = shortest_edge * shortest_edge / 4;  // half of a square of half the edge or more
+  return flux > 0 ? sun + flux / smallest : std::numeric_limits<double>::infinity();
+}
+
 /// Gathers at points that are new since the last time, in parallel.
 class Gatherer {
  public:
@@ -43,6 +55,7 @@ class Gatherer {
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
         layers_(layers),
+        most_delta_(most_delta_light(problem, options.shortest_edge)),
         worth_(worth_a_gather(mesh, options.most_points)),
         plans_(pilots_ ? mesh.points().position.size() : 0) {}
 
@@ -91,6 +104,15 @@ class Gatherer {
       mean.delta_light += here.delta_light * at.sample_weight[s];
       mean.std_error += here.std_error * at.sample_weight[s];
     }
+    if (const double delta = luminous_mean(mean.delta_light); delta > most_delta_) {
+      const double too_much = 1 - most_delta_ / delta;
+      mean.E = mean.E - mean.delta_light * too_much;
+      mean.delta_light *= 1 - too_much;
+      if (layers_) {
+        const std::span<double> all = lanes_of(field.layers, p), part = lanes_of(field.delta_layers, p);
+        for (std::size_t l = 0; l < part.size(); ++l) all[l] -= too_much * part[l], part[l] *= 1 - too_much;
+      }
+    }
     field.E.set(p, mean.E);
     field.delta_light.set(p, mean.delta_light);
     field.std_error[p] = mean.std_error;
@@ -101,6 +123,7 @@ class Gatherer {
   const ElementMesh& mesh_;
   bool pilots_;
   const RowLight* layers_;
+  double most_delta_;                             ///< of delta light at a point, luminous mean [W/m2]
   std::vector<bool> worth_;                       ///< by point of the mesh as it was at first
   std::vector<std::uint32_t> pilot_of_;           ///< by point: the one that sent a pilot for it
   std::vector<std::optional<GatherPlan>> plans_;  ///< by point of the mesh as it was at first

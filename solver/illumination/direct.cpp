@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <numbers>
 
+#include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
+#include "solver/lights/luminaire_view.h"
+#include "solver/lights/near_planes.h"
 #include "solver/lights/sun.h"
 #include "solver/model/assert.h"
 #include "solver/model/parallel.h"
@@ -21,19 +24,19 @@ namespace {
 
 /// A way from a point of a patch to a light, not yet known to be free.
 struct ShadowTry {
-  Vec3 end;                  ///< of the shadow ray
+  ShadowSegment way;
   Spectrum irradiance;       ///< when nothing blocks
   std::uint32_t number = 0;  ///< of the light, see Layer::lights
   std::uint32_t mirror = kNoMirror;
 };
 
-/// Adds to E_i the mean over points of patch i of the irradiance that open_at(point) gives where a segment to
-/// end_for(point, u, v) is free.
+/// Mean irradiance of patch i from shadow rays.
 class PatchSampler {
  public:
   /// row: null, or where to add what is found, by light.
   PatchSampler(const Problem& problem, std::size_t patch, const DirectOptions& options, LightRow* row)
       : problem_(problem),
+        patch_(patch),
         corners_(problem.patches.corner_positions(PatchId{patch})),
         normal_(problem.patches.normal[patch]),
         key_(stream_key(options.seed, kShadowPointsOfPatch, patch)),
@@ -43,13 +46,14 @@ class PatchSampler {
   const Vec3& normal() const { return normal_; }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
   /// Whether any of the luminaire may be in front of any of the patch.
-  bool faces(const Luminaire& luminaire) const {
+  bool faces(const PlacedLuminaire& luminaire) const {
+    if (is_mounted_in(luminaire, corners_[0], normal_)) return false;
     return std::any_of(corners_.begin(), corners_.end(),
                        [&](const Vec3& c) { return dot(normal_, luminaire.position - c) > -reach(luminaire); });
   }
 
   /// What the luminaire can give here without blockers, roughly; 0 only where it cannot give anything [W/m2].
-  double estimate(const Luminaire& luminaire) const {
+  double estimate(const PlacedLuminaire& luminaire) const {
     if (!faces(luminaire)) return 0;
     const Vec3 middle = centre();
     double sum = 0, size2 = 0;
@@ -64,33 +68,66 @@ class PatchSampler {
     return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
   }
 
-  template <class Open, class End>
-  Spectrum mean(std::uint32_t number, std::uint32_t mirror, const Open& open_at, const End& end_for,
-                bool wide = false) const {
-    return mean_of_choice(
-        [&](const Vec3& p, double u, double v, const auto&) {
-          const Vec3 end = end_for(p, u, v);
-          return ShadowTry{end, open_at(p, end), number, mirror};
-        },
-        wide);
+  /// Whether the patch has to be looked at from the luminaire: points spread over it would not do.
+  bool is_near(const PlacedLuminaire& luminaire, const Beam& beam) const {
+    return wants_view(luminaire, beam, corners_);
   }
 
-  /// The same where light(point, u, v, pick) gives the end and the irradiance together; pick() is a number to choose
-  /// by. wide: the light comes from all over an opening, which sixteen rays know to a few per cent only.
+  /// What the luminaire gives, by the solid angle of the patch: exact where nothing blocks.
+  Spectrum by_view(std::uint32_t number, const PlacedLuminaire& luminaire, const Beam& beam) const {
+    LuminaireView view(luminaire, beam, corners_, normal_);
+    const Spectrum per_flux = power(luminaire) / (beam.flux * problem_.patches.area[patch_]);
+    const Vec3 middle = centre();
+    const auto try_of = [&](double flux, const Vec3& q, const std::array<double, 4>& u) -> ShadowTry {
+      const Vec3 from = problem_.rays.off_surface(view.lit_point(u[0], u[1]), normal_);
+      return {shadow_segment(luminaire, q, from), per_flux * flux, number, luminaire.mirror};
+    };
+    if (opening_rays(luminaire, middle) == 1) {
+      const double flux = view.look_from(luminaire.position);
+      if (!(flux > 0)) return Spectrum(0.0);
+      return mean_of_tries(
+          [&](std::uint32_t, const std::array<double, 4>& u) { return try_of(flux, luminaire.position, u); },
+          options_.shadow_rays);
+    }
+    // All patches near by look from the same points of the opening, so that their sum is exact for each.
+    const std::uint64_t key = stream_key(options_.seed, kPointsOfLuminaire, number);
+    return mean_of_tries(
+        [&](std::uint32_t k, const std::array<double, 4>& u) -> ShadowTry {
+          const auto place = sobol4(k, key);
+          const Vec3 q = light_point(luminaire, middle, place[0], place[1]);
+          const double flux = view.look_from(q);
+          return flux > 0 ? try_of(flux, q, u) : ShadowTry{};
+        },
+        options_.edge_rays);
+  }
+
+  /// The mean over points of the patch where light(point, u, v, pick) gives the way and the irradiance; pick() is a
+  /// number to choose by. wide: the light comes from all over an opening, which sixteen rays know to a few per cent
+  /// only.
   template <class Light>
-  Spectrum mean_of_choice(const Light& light, bool wide) const {
-    if (options_.edge_rays <= options_.shadow_rays)
-      return kept(look(key_, options_.shadow_rays, light).sum / options_.shadow_rays, options_.shadow_rays);
-    // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
-    // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
-    const Tally pilot = look(mix_bits(key_), options_.shadow_rays, light);
-    const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
-    const int rays =
-        on_an_edge ? options_.edge_rays : std::min(options_.edge_rays, options_.shadow_rays * (wide ? 4 : 1));
-    return kept(look(key_, rays, light).sum / rays, rays);
+  Spectrum mean(const Light& light, bool wide = false) const {
+    return mean_of_tries(
+        [&](std::uint32_t k, const std::array<double, 4>& u) {
+          const Vec3 from = problem_.rays.off_surface(point_on_triangle(corners_, u[0], u[1]), normal_);
+          return light(from, u[2], u[3], [&] { return sobol4(k, key_ + 1)[0]; });
+        },
+        std::min(options_.edge_rays, options_.shadow_rays * (wide ? 4 : 1)));
   }
 
  private:
+  /// rays  where a pilot sees no edge.
+  template <class TryOf>
+  Spectrum mean_of_tries(const TryOf& try_of, int rays) const {
+    if (options_.edge_rays <= options_.shadow_rays)
+      return kept(look(key_, options_.shadow_rays, try_of).sum / options_.shadow_rays, options_.shadow_rays);
+    // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
+    // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
+    const Tally pilot = look(mix_bits(key_), options_.shadow_rays, try_of);
+    const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
+    const int count = on_an_edge ? options_.edge_rays : rays;
+    return kept(look(key_, count, try_of).sum / count, count);
+  }
+
   struct Tally {
     Spectrum sum{0.0};
     int facing = 0, visible = 0;
@@ -119,8 +156,8 @@ class PatchSampler {
     std::uint32_t number;
   };
 
-  template <class Light>
-  Tally look(std::uint64_t key, int count, const Light& light) const {
+  template <class TryOf>
+  Tally look(std::uint64_t key, int count, const TryOf& try_of) const {
     const RayScene& rays = problem_.rays;
     Tally tally;
     found_.clear();
@@ -131,18 +168,15 @@ class PatchSampler {
       if (row_) note(load.number, arrives);
     });
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
-      const auto u = sobol4(k, key);
-      const Vec3 from = rays.off_surface(point_on_triangle(corners_, u[0], u[1]), normal_);
-      const auto pick = [&] { return sobol4(k, key + 1)[0]; };
-      const ShadowTry to_light = light(from, u[2], u[3], pick);
+      const ShadowTry to_light = try_of(k, sobol4(k, key));
       if (to_light.irradiance.is_black()) continue;
       ++tally.facing;
-      const Vec3 to = short_of(to_light.end, from, rays.lift());
-      if (to_light.mirror == kNoMirror) {
+      const auto& [from, to, is_free] = to_light.way;
+      if (to_light.mirror == kNoMirror && !is_free) {
         shadows.send(from, to, {to_light.irradiance, to_light.number});
         continue;
       }
-      const Spectrum passes = rays.transmittance_by_mirror(from, to, to_light.mirror);
+      const Spectrum passes = is_free ? Spectrum(1.0) : rays.transmittance_by_mirror(from, to, to_light.mirror);
       tally.sum += to_light.irradiance * passes;
       tally.visible += !passes.is_black();
       if (row_ && !passes.is_black()) note(to_light.number, to_light.irradiance * passes);
@@ -152,6 +186,7 @@ class PatchSampler {
   }
 
   const Problem& problem_;
+  std::size_t patch_;
   std::array<Vec3, 3> corners_;
   Vec3 normal_;
   std::uint64_t key_;
@@ -160,25 +195,29 @@ class PatchSampler {
   mutable std::vector<OfLight> found_;
 };
 
-Spectrum from_luminaire(const Lights& lights, std::uint32_t number, const PatchSampler& patch) {
+Spectrum from_luminaire(const Lights& lights, std::span<const Beam> beams, std::uint32_t number,
+                        const PatchSampler& patch) {
   const PlacedLuminaire& luminaire = lights.luminaires[number];
   if (!patch.faces(luminaire)) return Spectrum(0.0);
+  if (patch.is_near(luminaire, beams[number])) return patch.by_view(number, luminaire, beams[number]);
   return patch.mean(
-      number, luminaire.mirror,
-      [&](const Vec3& p, const Vec3& q) { return open_irradiance(luminaire, q, p, patch.normal()); },
-      [&](const Vec3& p, double u, double v) { return light_point(luminaire, p, u, v); },
+      [&](const Vec3& p, double u, double v, const auto&) -> ShadowTry {
+        const Vec3 q = light_point(luminaire, p, u, v);
+        return {shadow_segment(luminaire, q, p), open_irradiance(luminaire, q, p, patch.normal()), number,
+                luminaire.mirror};
+      },
       opening_rays(luminaire, patch.centre()) > 4);
 }
 
 /// The luminaires over one patch. Those that give much of its light are looked at one by one; the others, however many,
 /// share the rays of one, each ray to a luminaire chosen in proportion to what it can give.
-Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
+Spectrum from_luminaires(const Lights& lights, std::span<const Beam> beams, const PatchSampler& patch) {
   constexpr std::size_t kFew = 4;    // luminaires that need no choice
   constexpr double kMuch = 1.0 / 6;  // of what all can give
   Spectrum E(0.0);
   if (lights.luminaires.size() <= kFew) {
     for (std::uint32_t number = 0; number < lights.luminaires.size(); ++number)
-      E += from_luminaire(lights, number, patch);
+      E += from_luminaire(lights, beams, number, patch);
     return E;
   }
   struct Over {
@@ -190,7 +229,11 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
   over.clear();
   double all = 0;
   for (std::uint32_t number = 0; number < lights.luminaires.size(); ++number) {
-    const Luminaire& luminaire = lights.luminaires[number];
+    const PlacedLuminaire& luminaire = lights.luminaires[number];
+    if (patch.faces(luminaire) && patch.is_near(luminaire, beams[number])) {
+      E += patch.by_view(number, luminaire, beams[number]);
+      continue;
+    }
     const double gives = patch.estimate(luminaire);
     if (gives > 0) over.push_back({number, gives, opening_rays(luminaire, patch.centre()) > 4});
     all += gives;
@@ -200,7 +243,7 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
   std::size_t kept = 0;
   for (const Over& luminaire : over) {
     if (luminaire.gives > kMuch * all) {
-      E += from_luminaire(lights, luminaire.number, patch);
+      E += from_luminaire(lights, beams, luminaire.number, patch);
     } else {
       shared += luminaire.gives;
       wide = wide || luminaire.wide;
@@ -214,26 +257,41 @@ Spectrum from_luminaires(const Lights& lights, const PatchSampler& patch) {
                                      [](double x, const Over& luminaire) { return x < luminaire.gives; });
     return static_cast<std::size_t>(std::min(at, over.end() - 1) - over.begin());
   };
-  return E + patch.mean_of_choice(
-                 [&](const Vec3& p, double u, double v, const auto& pick) {
+  return E + patch.mean(
+                 [&](const Vec3& p, double u, double v, const auto& pick) -> ShadowTry {
                    const std::size_t k = chosen(pick());
                    const double probability = (over[k].gives - (k > 0 ? over[k - 1].gives : 0)) / shared;
                    const PlacedLuminaire& luminaire = lights.luminaires[over[k].number];
                    const Vec3 q = light_point(luminaire, p, u, v);
-                   return ShadowTry{q, open_irradiance(luminaire, q, p, patch.normal()) / probability, over[k].number,
-                                    luminaire.mirror};
+                   return {shadow_segment(luminaire, q, p),
+                           open_irradiance(luminaire, q, p, patch.normal()) / probability, over[k].number,
+                           luminaire.mirror};
                  },
                  wide);
 }
 
 Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, std::uint32_t number, double far_away) {
   if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
-  return patch.mean(
-      number, sun.mirror,
-      [&](const Vec3& p, const Vec3& end) {
-        return sun.normal_irradiance * std::max(0.0, dot(patch.normal(), end - p) / far_away);
-      },
-      [&](const Vec3& p, double u, double v) { return p + direction_to_sun(sun, u, v) * far_away; });
+  return patch.mean([&](const Vec3& p, double u, double v, const auto&) -> ShadowTry {
+    const Vec3 d = direction_to_sun(sun, u, v);
+    return {{p, p + d * far_away, false},
+            sun.normal_irradiance * std::max(0.0, dot(patch.normal(), d)),
+            number,
+            sun.mirror};
+  });
+}
+
+std::vector<Beam> beams_of(const Lights& lights) {
+  std::vector<Beam> beams;
+  for (const Luminaire& luminaire : lights.luminaires) beams.push_back(beam_of(luminaire));
+  return beams;
+}
+
+Spectrum from_suns(const Lights& lights, const PatchSampler& patch, double far_away) {
+  Spectrum E(0.0);
+  const auto luminaires = static_cast<std::uint32_t>(lights.luminaires.size());
+  for (std::uint32_t k = 0; k < lights.suns.size(); ++k) E += from_sun(patch, lights.suns[k], luminaires + k, far_away);
+  return E;
 }
 
 constexpr std::size_t kMostOpenings = 4;  ///< over a patch
@@ -316,17 +374,16 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
 }
 
 /// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
-EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, std::uint32_t rays, std::uint64_t key) {
+EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, const Beam& beam, std::uint32_t rays,
+                      std::uint64_t key) {
   if (luminaire.mirror != kNoMirror) return {};  // mirrors turn the luminaire's own rays
   double sent = 0, arrived = 0, escaped = 0;
   for (std::uint32_t k = 0; k < rays; ++k) {
     const auto u = sobol4(k, key);
-    const Vec3 d = sphere_direction(u[0], u[1]);
+    const Vec3 d = direction_in(beam, u[0], u[1]), q = light_point(luminaire, luminaire.position, u[2], u[3]);
     const double I = luminous_mean(intensity(luminaire, d));
     if (!(I > 0)) continue;
-    const double lift = 20 * problem.rays.lift();
-    const Hit hit =
-        problem.rays.first_hit(problem.patches, {light_point(luminaire, luminaire.position, u[2], u[3]) + d * lift, d});
+    const Hit hit = problem.rays.first_hit(problem.patches, {ray_start(luminaire, q, d), d});
     sent += I;
     if (hit.escaped()) escaped += I * luminous_mean(hit.transmittance);
     if (hit.patch.valid()) arrived += I * luminous_mean(hit.transmittance);
@@ -337,15 +394,16 @@ EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, 
 }
 
 /// Many luminaires share the rays of four.
-void balance_luminaires(const Problem& problem, DirectLight& direct, const DirectOptions& options, DirectRows* rows) {
+void balance_luminaires(const Problem& problem, std::span<const Beam> beams, DirectLight& direct,
+                        const DirectOptions& options, DirectRows* rows) {
   const std::size_t count = problem.lights.luminaires.size();
   if (count == 0) return;
   const auto rays = static_cast<std::uint32_t>(std::clamp<std::size_t>((1 << 16) / count, 512, 1 << 14));
   std::vector<EnergyBalance> balances(count);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number)
-      balances[number] =
-          balance(problem, problem.lights.luminaires[number], rays, stream_key(options.seed, kFluxOfLuminaire, number));
+      balances[number] = balance(problem, problem.lights.luminaires[number], beams[number], rays,
+                                 stream_key(options.seed, kFluxOfLuminaire, number));
   });
   for (const EnergyBalance& b : balances) {
     direct.energy.emitted += b.emitted;
@@ -389,21 +447,19 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   }
   if (lights.empty()) return direct;
 
+  const std::vector<Beam> beams = beams_of(lights);
   const double far_away = 4 * problem.rays.diameter();
   std::vector<double> daylight(n);  // [W] of each patch
   const bool has_openings = !lights.openings.empty();
   std::vector<std::vector<std::uint32_t>> looked_at(has_openings ? n : 0);
   if (has_openings) direct.E_openings = Field(n, problem.patches.channels);
   std::vector<LightRow> row_of_patch(rows ? n : 0);
-  const auto luminaire_count = static_cast<std::uint32_t>(lights.luminaires.size());
   const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
     LightRow* row = rows ? &row_of_patch[i] : nullptr;
     if (row) row->clear();
     const PatchSampler patch(problem, i, spend, row);
-    const Spectrum luminaires = from_luminaires(lights, patch);
-    Spectrum sky(0.0);
-    for (std::uint32_t k = 0; k < lights.suns.size(); ++k)
-      sky += from_sun(patch, lights.suns[k], luminaire_count + k, far_away);
+    const Spectrum luminaires = from_luminaires(lights, beams, patch);
+    Spectrum sky = from_suns(lights, patch, far_away);
     if (has_openings) {
       const Spectrum through = through_openings(light, i, spend, looked_at[i], row);
       direct.E_openings.set(i, through);
@@ -441,9 +497,22 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   CLERESTORY_ASSERT(all_finite(direct.E), ==, true);
   direct.rays += n * static_cast<std::size_t>(options.shadow_rays) * (lights.luminaires.size() + lights.suns.size());
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
-  balance_luminaires(problem, direct, options, rows);
+  balance_luminaires(problem, beams, direct, options, rows);
   if (rows) keep(problem, row_of_patch, *rows);
   return direct;
+}
+
+Field delta_light_on(const Problem& problem, std::span<const std::uint32_t> patches, const DirectOptions& options) {
+  const std::vector<Beam> beams = beams_of(problem.lights);
+  Field E(patches.size(), problem.patches.channels);
+  parallel_for(patches.size(), 16, [&](std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) {
+      const PatchSampler patch(problem, patches[k], options, nullptr);
+      E.set(k, from_luminaires(problem.lights, beams, patch) +
+                   from_suns(problem.lights, patch, 4 * problem.rays.diameter()));
+    }
+  });
+  return E;
 }
 
 EnergyBalance DirectSource::energy_at(const Spectrum& factor) const {

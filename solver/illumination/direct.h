@@ -67,6 +67,10 @@ struct DirectRows {
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {},
                          DirectRows* rows = nullptr);
 
+/// Mean irradiance that luminaires and suns give some of the problem's patches, one value each, as direct_light() finds
+/// it [W/m2].
+Field delta_light_on(const Problem& problem, std::span<const std::uint32_t> patches, const DirectOptions& options);
+
 /// Direct light of layers, N x lanes [W/m2].
 struct DirectLayers {
   Field delta_light;                  ///< of luminaires and suns

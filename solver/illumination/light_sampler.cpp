@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "solver/lights/luminaire.h"
+#include "solver/lights/near_planes.h"
 #include "solver/lights/sun.h"
 #include "solver/model/assert.h"
 #include "solver/model/random_stream.h"
@@ -143,7 +144,7 @@ LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick
   const Vec3 q = light_point(luminaire, p, u, v);
   const double probability = share * choice.probability;
   return {
-      short_of(q, p, problem_.rays.lift()), open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.mirror};
+      shadow_segment(luminaire, q, p).to, open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.mirror};
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
@@ -191,26 +192,29 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, s
   auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
     arrive(load.irradiance * rays.glass_transmittance(from, to), load.number);
   });
-  const auto look = [&](const Vec3& to, const Spectrum& irradiance, std::size_t number, std::uint32_t mirror) {
+  const auto look = [&](const ShadowSegment& way, const Spectrum& irradiance, std::size_t number,
+                        std::uint32_t mirror) {
     if (irradiance.is_black()) return;
-    if (mirror != kNoMirror)
-      arrive(irradiance * rays.transmittance_by_mirror(p, to, mirror), number);
+    if (way.is_free)
+      arrive(irradiance, number);
+    else if (mirror != kNoMirror)
+      arrive(irradiance * rays.transmittance_by_mirror(way.from, way.to, mirror), number);
     else
-      shadows.send(p, to, {irradiance, number});
+      shadows.send(way.from, way.to, {irradiance, number});
   };
   // In the tree's order luminaires that share a packet are neighbours.
-  const double lift = rays.lift();
   for (const std::uint32_t number : luminaires_.order()) {
     const PlacedLuminaire& luminaire = problem_.lights.luminaires[number];
     const int count = opening_rays(luminaire, p);
     if (count == 1) {
-      look(short_of(luminaire.position, p, lift), open_irradiance(luminaire, p, n), number, luminaire.mirror);
+      look(shadow_segment(luminaire, luminaire.position, p), open_irradiance(luminaire, p, n), number,
+           luminaire.mirror);
       continue;
     }
     for (int k = 0; k < count; ++k) {
       const OpeningPlace at = opening_place(luminaire, k, count);
       const Vec3 q = light_point(luminaire, p, at.u, at.v);
-      look(short_of(q, p, lift), open_irradiance(luminaire, q, p, n) * at.weight, number, luminaire.mirror);
+      look(shadow_segment(luminaire, q, p), open_irradiance(luminaire, q, p, n) * at.weight, number, luminaire.mirror);
     }
   }
   shadows.trace();
@@ -219,7 +223,7 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, s
     for (int k = 0; k < sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
-      look(p + d * (4 * rays.diameter()), sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays),
+      look({p, p + d * (4 * rays.diameter()), false}, sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays),
            problem_.lights.luminaires.size() + number, sun.mirror);
     }
     shadows.trace();

@@ -21,42 +21,45 @@ double SharpLight::open_irradiance(const Vec3& p, const Vec3& n) const {
   return luminous_mean(sun_->normal_irradiance) * std::max(0.0, dot(n, sun_->direction));
 }
 
-SharpLight::Segment SharpLight::to_centre(const Vec3& p, const Vec3& n) const {
+ShadowSegment SharpLight::to_centre(const Vec3& p, const Vec3& n) const {
   const Vec3 from = problem_->rays.off_surface(p, n);
-  if (luminaire_) return {from, short_of(luminaire_->position, from, problem_->rays.lift())};
-  return {from, from + sun_->direction * (4 * problem_->rays.diameter())};
+  if (luminaire_) return shadow_segment(*luminaire_, luminaire_->position, from);
+  return {from, from + sun_->direction * (4 * problem_->rays.diameter()), false};
 }
 
-SharpLight::Segment SharpLight::to_rim(const Vec3& p, const Vec3& n, int k) const {
+ShadowSegment SharpLight::to_rim(const Vec3& p, const Vec3& n, int k) const {
   const double around = static_cast<double>(k) / kRimRays;
   const Vec3 from = problem_->rays.off_surface(p, n);
-  if (luminaire_) return {from, short_of(rim_point(*luminaire_, from, around), from, problem_->rays.lift())};
-  return {from, from + direction_to_sun(*sun_, kRim, around) * (4 * problem_->rays.diameter())};
+  if (luminaire_) return shadow_segment(*luminaire_, rim_point(*luminaire_, from, around), from);
+  return {from, from + direction_to_sun(*sun_, kRim, around) * (4 * problem_->rays.diameter()), false};
 }
 
-std::uint16_t SharpLight::free(std::span<const Segment> segments) const {
+std::uint16_t SharpLight::free(std::span<const ShadowSegment> segments) const {
   const RayScene& rays = problem_->rays;
   const std::uint32_t mirror = sun_ ? sun_->mirror : luminaire_->mirror;
+  unsigned free = 0;
+  for (std::size_t k = 0; k < segments.size(); ++k) free |= segments[k].is_free ? 1u << k : 0u;
   if (mirror == kNoMirror) {
     SegmentPacket packet;
     for (std::size_t k = 0; k < segments.size(); ++k) packet.set(static_cast<int>(k), segments[k].from, segments[k].to);
-    return rays.visible16(packet, static_cast<std::uint16_t>((1u << segments.size()) - 1));
+    const auto asked = static_cast<std::uint16_t>(((1u << segments.size()) - 1) & ~free);
+    return static_cast<std::uint16_t>(rays.visible16(packet, asked) | free);
   }
-  unsigned free = 0;
   for (std::size_t k = 0; k < segments.size(); ++k)
-    if (!rays.transmittance_by_mirror(segments[k].from, segments[k].to, mirror).is_black()) free |= 1u << k;
+    if (!segments[k].is_free && !rays.transmittance_by_mirror(segments[k].from, segments[k].to, mirror).is_black())
+      free |= 1u << k;
   return static_cast<std::uint16_t>(free);
 }
 
 std::uint16_t SharpLight::see_centre(std::span<const Vec3> points, const Vec3& n) const {
-  std::array<Segment, 16> segments;
+  std::array<ShadowSegment, 16> segments;
   for (std::size_t k = 0; k < points.size(); ++k) segments[k] = to_centre(points[k], n);
   return free(std::span(segments).first(points.size()));
 }
 
 LightSeen SharpLight::seen(const Vec3& p, const Vec3& n) const {
   if (luminaire_ && opening_rays(*luminaire_, p) == 1) return sees_centre(p, n) ? LightSeen::all : LightSeen::none;
-  std::array<Segment, kRimRays> segments;
+  std::array<ShadowSegment, kRimRays> segments;
   for (int k = 0; k < kRimRays; ++k) segments[static_cast<std::size_t>(k)] = to_rim(p, n, k);
   const std::uint16_t seen = free(segments);
   return seen == 0 ? LightSeen::none : seen == 0xffff ? LightSeen::all : LightSeen::part;

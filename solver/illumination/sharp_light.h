@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/illumination/problem.h"
+#include "solver/lights/near_planes.h"
 
 namespace clerestory {
 
@@ -27,12 +28,9 @@ class SharpLight {
   LightSeen seen(const Vec3& p, const Vec3& n) const;
 
  private:
-  struct Segment {
-    Vec3 from, to;
-  };
-  Segment to_centre(const Vec3& p, const Vec3& n) const;
-  Segment to_rim(const Vec3& p, const Vec3& n, int k) const;
-  std::uint16_t free(std::span<const Segment> segments) const;
+  ShadowSegment to_centre(const Vec3& p, const Vec3& n) const;
+  ShadowSegment to_rim(const Vec3& p, const Vec3& n, int k) const;
+  std::uint16_t free(std::span<const ShadowSegment> segments) const;
 
   const Problem* problem_;
   const PlacedSun* sun_ = nullptr;

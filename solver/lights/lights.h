@@ -12,9 +12,20 @@ namespace clerestory {
 
 inline constexpr std::uint32_t kNoMirror = 0xffffffff;
 
+/// Plane of a surface that a luminaire stands so near to that rays in float may start on its wrong side.
+struct NearPlane {
+  Vec3 normal;            ///< unit
+  double offset = 0;      ///< dot(normal, x) = offset in the plane [m]
+  double clearance = 0;   ///< distance that ends of rays keep from it [m], > 0
+  bool is_mount = false;  ///< the luminaire is mounted in it: in the very plane, as recessed downlights are
+
+  double height(const Vec3& x) const { return dot(normal, x) - offset; }
+};
+
 /// A luminaire, or its image behind a mirror.
 struct PlacedLuminaire : Luminaire {
-  std::uint32_t mirror = kNoMirror;  ///< of an image: the mirror (RayScene::mirrors) that shows it
+  std::uint32_t mirror = kNoMirror;      ///< of an image: the mirror (RayScene::mirrors) that shows it
+  std::vector<NearPlane> near_planes{};  ///< of surfaces around it; see find_near_planes()
 };
 
 /// The sun, or its image.

@@ -103,10 +103,4 @@ Spectrum open_irradiance(const Luminaire& luminaire, const Vec3& p, const Vec3& 
   return open_irradiance(luminaire, luminaire.position, p, n);
 }
 
-Vec3 short_of(const Vec3& q, const Vec3& p, double lift) {
-  const Vec3 back = p - q;
-  const double r = length(back);
-  return r > 0 ? q + back * std::min(0.5, 20 * lift / r) : q;
-}
-
 }  // namespace clerestory

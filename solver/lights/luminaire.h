@@ -39,8 +39,4 @@ Spectrum open_irradiance(const Luminaire& luminaire, const Vec3& q, const Vec3& 
 /// The same from the position.
 Spectrum open_irradiance(const Luminaire& luminaire, const Vec3& p, const Vec3& n);
 
-/// End of the shadow ray from p to q on a luminaire: short of it by a hair, as many hang in the very plane of a
-/// ceiling.
-Vec3 short_of(const Vec3& q, const Vec3& p, double lift);
-
 }  // namespace clerestory

@@ -19,10 +19,13 @@ bool any_channel_dark(std::span<const double> lanes, int channels) {
   return false;
 }
 
-/// Factors that put delta light of the leaves of what was one element right: its exact flux over their corners' mean.
-/// What no corner sees stays out.
-std::vector<double> delta_gains(const ElementMesh& mesh, std::span<const std::uint32_t> leaves,
-                                const VertexField& field, std::span<const double> exact) {
+/// What puts delta light of the leaves of what was one element right: a factor, its exact flux over their corners'
+/// mean; or, where no corner sees any (a luminaire near by may shine between them), all of it, evenly.
+struct DeltaGains {
+  std::vector<double> factor, evenly;
+};
+DeltaGains delta_gains(const ElementMesh& mesh, std::span<const std::uint32_t> leaves, const VertexField& field,
+                       std::span<const double> exact) {
   std::vector<double> mean(exact.size());
   double area = 0;
   for (const std::uint32_t leaf : leaves) {
@@ -30,9 +33,12 @@ std::vector<double> delta_gains(const ElementMesh& mesh, std::span<const std::ui
     for (const std::uint32_t p : mesh.points_of(leaf)) add(lanes_of(field.delta_layers, p), part / 3, mean);
     area += part;
   }
-  std::vector<double> gain(exact.size(), 1.0);
-  for (std::size_t l = 0; l < gain.size(); ++l)
-    if (mean[l] > 0) gain[l] = exact[l] * area / mean[l];
+  DeltaGains gain{std::vector<double>(exact.size(), 1.0), std::vector<double>(exact.size(), 0.0)};
+  for (std::size_t l = 0; l < exact.size(); ++l)
+    if (mean[l] > 0)
+      gain.factor[l] = exact[l] * area / mean[l];
+    else
+      gain.evenly[l] = exact[l];
   return gain;
 }
 
@@ -67,13 +73,13 @@ Field radiosity_of_layers(const ElementMesh& mesh, const TransportLayers& transp
   std::size_t i = 0;
   for (std::size_t j = 0; j < transport.leaves.size(); ++j) {
     const auto parts = std::span(leaves).subspan(i, mesh.leaves_under(transport.leaves[j]));
-    const std::vector<double> gain = delta_gains(mesh, parts, field, lanes_of(transport.delta_light, j));
+    const DeltaGains gain = delta_gains(mesh, parts, field, lanes_of(transport.delta_light, j));
     for (const std::uint32_t leaf : parts) {
       const std::span<double> own = lanes_of(E_layers, i);
       for (const std::uint32_t p : mesh.points_of(leaf)) {
         add(lanes_of(field.layers, p), 1, own);
         const std::span<const double> delta = lanes_of(field.delta_layers, p);
-        for (std::size_t l = 0; l < own.size(); ++l) own[l] += (gain[l] - 1) * delta[l];
+        for (std::size_t l = 0; l < own.size(); ++l) own[l] += (gain.factor[l] - 1) * delta[l] + gain.evenly[l];
       }
       if (any_channel_dark(own, channels)) std::ranges::copy(lanes_of(transport.E, j), own.begin());
       divide_among_layers(E[i], channels, own);

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "solver/gather/gather.h"
+#include "solver/illumination/near_luminaires.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
@@ -38,8 +39,11 @@ std::vector<std::uint32_t> noisy_patches(const Problem& problem, const Solution&
     sum.flux += patches.area[i] * luminous_mean(solution.E[i]);
     sum.area += patches.area[i];
   }
+  // Where a luminaire is near its light is known exactly, and one point would know nothing of it.
+  const std::vector<bool> near = patches_near_luminaires(patches, problem.lights);
   std::vector<std::uint32_t> noisy;
   for (std::size_t i = 0; i < n; ++i) {
+    if (near[i]) continue;
     const Sum& sum = sums[neighbourhood(i)];
     if (patches.area[i] * sum.flux < fewest * solution.flux_per_ray * sum.area)
       noisy.push_back(static_cast<std::uint32_t>(i));

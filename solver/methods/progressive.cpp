@@ -233,6 +233,8 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
 
   // What is not shot by now is spread as ambient light, and balanced as such.
   shoot_ambient(light, closure, ambient_radiosity(light, closure));
+  // What overshooting lent to dark corners is taken back by chance, here and there more than was lent.
+  for (double& E : light.E.value) E = std::max(0.0, E);
   CLERESTORY_ASSERT(all_finite(light.E), ==, true);
   solution.E = light.E;
   solution.B = Field(n, p.channels);

@@ -21,6 +21,7 @@ enum Stream : std::uint64_t {
   kSkyRaysOfPatch = 0x12,
   kFluxOfLuminaire = 0x13,
   kOpeningRaysOfPatch = 0x14,
+  kPointsOfLuminaire = 0x15,
   // Spaces, by patch, luminaire or opening.
   kClosureRays = 0x21,
   kSideRays = 0x31,

@@ -6,10 +6,12 @@
 
 #include "solver/gather/gather.h"
 #include "solver/illumination/direct.h"
+#include "solver/illumination/near_luminaires.h"
 #include "solver/methods/form_factor_matrix.h"
 #include "solver/methods/gauss_seidel.h"
 #include "solver/methods/hierarchical_field.h"
 #include "solver/methods/jacobi.h"
+#include "solver/methods/near_points.h"
 #include "solver/methods/noisy_patches.h"
 #include "solver/methods/path.h"
 #include "solver/methods/progressive.h"
@@ -19,6 +21,7 @@
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
 #include "solver/run/memory_estimate.h"
+#include "solver/run/sound_result.h"
 #include "solver/spaces/closure.h"
 
 namespace clerestory {
@@ -90,6 +93,13 @@ void count_luminaires(EnergyBalance& energy, const PatchSet& patches, const Dire
   energy.emitted -= total_flux(patches, direct.E);  // what arrived of it is in there already
 }
 
+std::vector<std::uint32_t> numbers_of(const std::vector<bool>& chosen) {
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < chosen.size(); ++i)
+    if (chosen[i]) numbers.push_back(i);
+  return numbers;
+}
+
 /// Irradiance at places by the method of the solution.
 PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, std::size_t count,
                               const PointOf& point_of, const GatherQuality& quality, int paths, Stream stream,
@@ -145,10 +155,10 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
   return solution;
 }
 
-SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor, HierarchyDebug* debug) {
-  if (options.method == Method::hierarchical)
-    return solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug);
+namespace {
+
+SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, const SolveOptions& options,
+                                    const Monitor& monitor) {
   SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor)};
   auto& [elements, lightmap, solution] = solved;
   average_to_points(problem.patches, solution.E, lightmap);
@@ -158,7 +168,22 @@ SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_e
       irradiance_at(problem, solution, lightmap.sample_position.size(), sample_points(lightmap, problem.rays),
                     e.vertices, e.paths, kPathsOfSample, "vertices", options, monitor);
   set_points(at_samples, lightmap);
+  const std::vector<std::uint32_t> near = numbers_of(patches_near_luminaires(problem.patches, problem.lights));
+  carry_flux_to_points(problem.patches, solution.E, near, lightmap);
   solution.rays += at_samples.rays;
+  return solved;
+}
+
+}  // namespace
+
+SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
+                    const Monitor& monitor, HierarchyDebug* debug) {
+  SolvedPatches solved = options.method == Method::hierarchical
+                             ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug)
+                             : solve_by_other_method(problem, std::move(map), options, monitor);
+  require_sound(solved.solution.E, "irradiance of the elements");
+  require_sound(solved.solution.B, "radiosity of the elements");
+  require_sound(solved.lightmap.E, "irradiance at the points");
   return solved;
 }
 
@@ -171,10 +196,13 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
                          "sensors", options, m);
   };
   PointIrradiance at_points = by(effort_of(options), monitor);
-  if (at_points.complete()) return at_points;
-  Monitor patient;
-  patient.progress = monitor.progress;
-  return by(effort(Accuracy::draft, options.tighten), patient);
+  if (!at_points.complete()) {
+    Monitor patient;
+    patient.progress = monitor.progress;
+    at_points = by(effort(Accuracy::draft, options.tighten), patient);
+  }
+  require_sound(at_points.E, "irradiance at the sensors");
+  return at_points;
 }
 
 }  // namespace clerestory

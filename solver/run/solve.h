@@ -41,7 +41,8 @@ struct SolvedPatches {
 /// map           the lightmap of problem.patches.
 /// longest_edge  of the patches [m]; the hierarchical method halves them down to a share of it.
 /// debug         filled by the hierarchical method where it is asked for; nothing is computed for it otherwise.
-/// throws        InputError when the method needs more memory than there is, or cannot do what the scene has.
+/// throws        InputError when the method needs more memory than there is, or cannot do what the scene has;
+///               std::logic_error when a value comes out negative or as no number: nobody shall see it.
 /// Stops early when the monitor says so, and returns what is solved so far, marked in Solution::stop; vertices that
 /// were not reached then show the mean of their elements.
 /// Threads: same bits for any thread count.

@@ -5,7 +5,9 @@
 
 #include "solver/illumination/bright_areas.h"
 #include "solver/illumination/light_sampler.h"
+#include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
+#include "solver/lights/near_planes.h"
 #include "solver/lights/sun.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
@@ -123,10 +125,10 @@ Found look_for_lights(const Problem& problem, const LightSampler& emitters, std:
     if (luminaire.mirror != kNoMirror) continue;
     found.lit = any_visible(problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
       const auto u = sobol4(k, key + 1);
-      from = points[k];
-      const Vec3 q = light_point(luminaire, from, u[0], u[1]);
-      to = short_of(q, from, lift);
-      return !open_irradiance(luminaire, q, from, n).is_black();
+      const Vec3 q = light_point(luminaire, points[k], u[0], u[1]);
+      const ShadowSegment way = shadow_segment(luminaire, q, points[k]);
+      from = way.from, to = way.to;
+      return !open_irradiance(luminaire, q, points[k], n).is_black();
     });
   }
   for (std::uint32_t k = 0; k < samples && emitters.has_bright_patches(); ++k) {
@@ -150,11 +152,11 @@ void light_by_luminaires(const Problem& problem, std::uint64_t seed, Spaces& spa
     for (std::size_t number = from; number < to; ++number) {
       const PlacedLuminaire& luminaire = luminaires[number];
       if (luminaire.mirror != kNoMirror) continue;
+      const Beam beam = beam_of(luminaire);
       const std::uint64_t key = stream_key(seed, kLuminaireRays, number);
       for (std::size_t k = 0; k < rays_each; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-        const Vec3 d = sphere_direction(u[0], u[1]);
-        const Vec3 start = luminaire.position + d * (20 * problem.rays.lift());
+        const Vec3 d = direction_in(beam, u[0], u[1]), start = ray_start(luminaire, luminaire.position, d);
         if (!intensity(luminaire, d).is_black())
           met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
       }

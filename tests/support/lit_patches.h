@@ -4,12 +4,15 @@
 #include <utility>
 
 #include "solver/illumination/light_sampler.h"
+#include "solver/illumination/near_luminaires.h"
 
 namespace clerestory::test {
 
 struct LitPatches {
   explicit LitPatches(PatchSet set, Lights with = {})
-      : patches(std::move(set)), rays(patches), lights(std::move(with)) {}
+      : patches(std::move(set)), rays(patches), lights(std::move(with)) {
+    find_near_planes(lights, patches, rays);
+  }
   PatchSet patches;
   RayScene rays;
   Lights lights;

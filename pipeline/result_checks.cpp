@@ -1,0 +1,47 @@
+#include "pipeline/result_checks.h"
+
+#include <cmath>
+#include <string>
+
+#include "pipeline/wording.h"
+#include "solver/model/units.h"
+#include "solver/run/accuracy.h"
+
+namespace clerestory {
+namespace {
+
+constexpr double kMostImbalance = 0.01;
+
+void warn_about_energy(const EnergyBalance& energy, Observer& observer) {
+  const double off = energy.imbalance();
+  if (std::abs(off) <= kMostImbalance) return;
+  const std::string lumen = rounded(kWhiteEfficacy * std::abs(off) * energy.emitted) + " lm of " +
+                            rounded(kWhiteEfficacy * energy.emitted) + " lm";
+  observer.warn(off > 0 ? percent(off) + " of the light is missing from this result (" + lumen +
+                              "): illuminances are too low, not everywhere alike. Do not rely on them; try --accuracy "
+                              "fine or a smaller --max-element."
+                        : "this result holds " + percent(-off) + " more light than was sent (" + lumen +
+                              "): illuminances are too high, not everywhere alike. Do not rely on them; try --accuracy "
+                              "fine or a smaller --max-element.");
+}
+
+void warn_about_error(const Solved& s, Observer& observer) {
+  if (!s.error || s.settings.target_error) return;  // a target that is missed is said by who asked for it
+  const double stated = effort(s.settings.solve.accuracy).vertex_tolerance;
+  if (s.error->rms_relative - s.error->confidence <= stated) return;
+  observer.warn("the measured error is " + percent(s.error->rms_relative) + " rms (+- " + percent(s.error->confidence) +
+                "), more than the " + percent(stated) +
+                " that this accuracy stands for: light changes faster than the elements show, beside a lamp or a "
+                "narrow gap. Means and sensors are better than single values of the picture; try --accuracy fine, a "
+                "smaller --max-element or --target-error.");
+}
+
+}  // namespace
+
+void warn_about_result(const Solved& solved, Observer& observer) {
+  if (solved.empty()) return;
+  warn_about_energy(solved.solution.energy, observer);
+  warn_about_error(solved, observer);
+}
+
+}  // namespace clerestory

@@ -1,0 +1,164 @@
+#include "solver/illumination/near_luminaires.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/lights/luminaire.h"
+#include "solver/lights/luminaire_view.h"
+#include "solver/lights/near_planes.h"
+#include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/units.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+namespace {
+
+// Of the scene's diameter: floats resolve 6e-8 of it, and what rays are lifted by is 5e-7.
+constexpr double kClearance = 2e-6, kDoubleRounding = 1e-12;
+constexpr double kFloatRounding = 1.2e-7;  // of a coordinate: two roundings
+constexpr std::size_t kMostPlanes = 24;    // of a luminaire, the nearest
+constexpr std::uint32_t kRays = 128;       // that tell where its light goes, and whether its side is open
+
+/// Point of a triangle that is nearest to p. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.
+Vec3 nearest_point(const std::array<Vec3, 3>& t, const Vec3& p) {
+  const auto& [a, b, c] = t;
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
+  const Vec3 cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  const double sum = va + vb + vc;
+  return sum > 0 ? a + ab * (vb / sum) + ac * (vc / sum) : a;
+}
+
+struct Found {
+  NearPlane plane;
+  double distance;  ///< of the surface from the luminaire's position [m]
+};
+
+/// Planes of all triangles within the clearance of the luminaires, by luminaire, each once.
+std::vector<std::vector<Found>> planes_around(const std::vector<PlacedLuminaire>& luminaires, const PatchSet& patches,
+                                              double clearance) {
+  std::vector<std::pair<double, std::uint32_t>> by_x;
+  double farthest = 0;
+  for (std::uint32_t k = 0; k < luminaires.size(); ++k) {
+    by_x.emplace_back(luminaires[k].position.x, k);
+    farthest = std::max(farthest, 2 * clearance + reach(luminaires[k]));
+  }
+  std::sort(by_x.begin(), by_x.end());
+  std::vector<std::vector<Found>> found(luminaires.size());
+  for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
+    const std::array<Vec3, 3> c{patches.vertices[patches.corners[t][0]], patches.vertices[patches.corners[t][1]],
+                                patches.vertices[patches.corners[t][2]]};
+    const double from = std::min({c[0].x, c[1].x, c[2].x}) - farthest,
+                 to = std::max({c[0].x, c[1].x, c[2].x}) + farthest;
+    for (auto at = std::lower_bound(by_x.begin(), by_x.end(), std::pair<double, std::uint32_t>{from, 0});
+         at != by_x.end() && at->first <= to; ++at) {
+      const PlacedLuminaire& luminaire = luminaires[at->second];
+      const Vec3& q = luminaire.position;
+      const double within = 2 * clearance + reach(luminaire);
+      if (std::min({c[0].y, c[1].y, c[2].y}) - q.y > within || q.y - std::max({c[0].y, c[1].y, c[2].y}) > within ||
+          std::min({c[0].z, c[1].z, c[2].z}) - q.z > within || q.z - std::max({c[0].z, c[1].z, c[2].z}) > within)
+        continue;
+      const double distance = length(nearest_point(c, q) - q);
+      const Vec3 n = normalized(cross(c[1] - c[0], c[2] - c[0]));
+      if (!(distance <= within) || !(dot(n, n) > 0.5)) continue;
+      const NearPlane plane{n, dot(n, c[0]), clearance};
+      auto& planes = found[at->second];
+      const auto same = std::ranges::find_if(planes, [&](const Found& f) {
+        return std::abs(dot(f.plane.normal, n)) > 1 - 1e-12 &&
+               std::abs(plane.height(q) * dot(f.plane.normal, n) - f.plane.height(q)) < 1e-6 * clearance;
+      });
+      if (same == planes.end())
+        planes.push_back({plane, distance});
+      else
+        same->distance = std::min(same->distance, distance);
+    }
+  }
+  return found;
+}
+
+/// Whether most of the light of the luminaire goes to the side of `towards` (unit) of its position.
+bool shines_mostly(const Luminaire& luminaire, const Vec3& towards) {
+  const Beam beam = beam_of(luminaire);
+  double there = 0, all = 0;
+  for (std::uint32_t k = 0; k < kRays; ++k) {
+    const auto u = sobol4(k, 1);
+    const Vec3 d = direction_in(beam, u[0], u[1]);
+    const double I = luminous_mean(intensity(luminaire, d));
+    all += I;
+    if (dot(d, towards) > 0) there += I;
+  }
+  return there > 0.5 * all;
+}
+
+/// Whether rays from q to the side of `n` leave the scene.
+bool is_open(const PatchSet& patches, const RayScene& rays, const Vec3& q, const Vec3& n) {
+  const Frame frame(n);
+  for (std::uint32_t k = 0; k < kRays; ++k) {
+    const auto u = sobol4(k, 2);
+    if (rays.first_hit(patches, {q, cosine_direction(frame, u[0], u[1])}).escaped()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void find_near_planes(Lights& lights, const PatchSet& patches, const RayScene& rays) {
+  if (lights.luminaires.empty()) return;
+  const double clearance = kClearance * rays.diameter(), exact = kDoubleRounding * rays.diameter();
+  auto found = planes_around(lights.luminaires, patches, clearance);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    PlacedLuminaire& luminaire = lights.luminaires[k];
+    std::vector<Found>& around = found[k];
+    std::ranges::stable_sort(around, {}, &Found::distance);
+    if (around.size() > kMostPlanes) around.resize(kMostPlanes);
+    for (Found& f : around) {
+      const double height = f.plane.height(luminaire.position);
+      const double coordinate = std::abs(dot(f.plane.normal, luminaire.position + patches.origin));
+      const Vec3 up = height < 0 ? -f.plane.normal : f.plane.normal;  // to its own side
+      f.plane.is_mount = std::abs(height) <= exact ||
+                         (std::abs(height) <= kFloatRounding * coordinate && shines_mostly(luminaire, -up) &&
+                          is_open(patches, rays, luminaire.position + up * (clearance - std::abs(height)), up));
+    }
+    // In a slot narrower than two clearances rays keep to its middle.
+    for (Found& f : around)
+      for (const Found& other : around) {
+        const double own = f.plane.height(luminaire.position), theirs = other.plane.height(luminaire.position);
+        const bool opposite = dot(f.plane.normal, other.plane.normal) * own * theirs < 0;
+        if (opposite && std::abs(dot(f.plane.normal, other.plane.normal)) > 0.5 && !f.plane.is_mount &&
+            !other.plane.is_mount)
+          f.plane.clearance = std::min(f.plane.clearance, 0.4 * (std::abs(own) + std::abs(theirs)));
+      }
+    luminaire.near_planes.clear();
+    for (const Found& f : around) luminaire.near_planes.push_back(f.plane);
+  }
+}
+
+std::vector<bool> patches_near_luminaires(const PatchSet& patches, const Lights& lights) {
+  std::vector<Beam> beams;
+  for (const Luminaire& luminaire : lights.luminaires) beams.push_back(beam_of(luminaire));
+  std::vector<char> near(patches.patch_count(), 0);
+  parallel_for(near.size(), 256, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const auto corners = patches.corner_positions(PatchId{i});
+      for (std::size_t k = 0; k < beams.size() && !near[i]; ++k)
+        near[i] = wants_view(lights.luminaires[k], beams[k], corners);
+    }
+  });
+  return {near.begin(), near.end()};
+}
+
+}  // namespace clerestory

@@ -1,0 +1,35 @@
+#include "solver/lights/beam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solver/lights/luminaire.h"
+#include "solver/model/units.h"
+
+namespace clerestory {
+namespace {
+
+/// [rad] By judgement: photometric files have an angle every 2.5 to 5 degrees, and change slowly but for narrow beams.
+constexpr double kCoarsest = 0.15, kFinest = 2e-3;
+constexpr double kShareOfBeam = 0.4;  // of the half-angle of a cone that the peak would fill with all the flux
+
+}  // namespace
+
+Beam beam_of(const Luminaire& luminaire) {
+  const LightBounds b = bounds(luminaire);
+  Beam beam{b.axis, b.cone < std::numbers::pi ? b.cone : std::numbers::pi, b.power, luminous_mean(power(luminaire)), 0};
+  const double filled = beam.peak > 0 ? beam.flux / (std::numbers::pi * beam.peak) : 0;  // square of that half-angle
+  beam.finest = std::clamp(kShareOfBeam * std::sqrt(filled), kFinest, kCoarsest);
+  beam.is_even = std::holds_alternative<PointLuminaire>(luminaire.kind);
+  return beam;
+}
+
+Vec3 direction_in(const Beam& beam, double u, double v) {
+  const Frame frame(beam.half_angle < std::numbers::pi ? beam.axis : Vec3{0, 0, 1});
+  const double z = 1 - u * (1 - std::cos(beam.half_angle)), r = std::sqrt(std::max(0.0, 1 - z * z));
+  const double phi = 2 * std::numbers::pi * v;
+  return frame.to_world(r * std::cos(phi), r * std::sin(phi), z);
+}
+
+}  // namespace clerestory

@@ -21,6 +21,16 @@ std::string line_and_column(std::string_view bytes, std::size_t offset) {
   return text(line, ":", column);
 }
 
+/// "...; last read: 'TOKEN'; expected ...": a token may be as long as the file.
+std::string with_short_token(const std::string& what) {
+  constexpr std::string_view kBefore = "; last read: '";
+  const std::size_t begin = what.find(kBefore), end = what.rfind('\'');
+  if (begin == what.npos || end < begin + kBefore.size()) return quotable(what, 200);
+  const std::string token = what.substr(begin + kBefore.size(), end - begin - kBefore.size());
+  return quotable(what.substr(0, begin), 200) + std::string(kBefore) + quotable(token) +
+         quotable(what.substr(end), 100);
+}
+
 }  // namespace
 
 template <class AnyJson>
@@ -53,7 +63,7 @@ AnyJson parse_json(std::string_view bytes, const std::string& file_name, const J
     const std::size_t detail = what.find(": ");
     if (detail != what.npos) what = what.substr(detail + 2);
     throw InputError(text(file_name, ":", line_and_column(bytes, error.byte > 0 ? error.byte - 1 : 0),
-                          ": is not valid JSON: ", quotable(what, 200)));
+                          ": is not valid JSON: ", with_short_token(what)));
   } catch (const typename AnyJson::exception& error) {
     const std::string what = error.what();
     const std::size_t detail = what.find("] ");

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "apps/interrupt.h"
+#include "io/text.h"
 #include "pipeline/wording.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
@@ -82,7 +83,8 @@ void Console::log(const char* kind, const std::string& line) {
     unsaid_ = "--log " + log_name_ + ": cannot be written: " + problem;
 }
 
-void Console::say(const std::string& line) {
+void Console::say(const std::string& said) {
+  const std::string line = message_line(said);
   log("", line);
   if (quiet_) return;
   progress_line_.clear();
@@ -90,14 +92,16 @@ void Console::say(const std::string& line) {
     unsaid_ = "standard output cannot be written: " + problem;
 }
 
-void Console::warn(const std::string& line) {
+void Console::warn(const std::string& said) {
+  const std::string line = message_line(said);
   log("warning: ", line);
   warnings_.push_back(line);
   progress_line_.clear();
   std::cerr << "warning: " << line << std::endl;
 }
 
-void Console::fail(const std::string& line) {
+void Console::fail(const std::string& said) {
+  const std::string line = message_line(said);
   log("error: ", line);
   progress_line_.clear();
   std::cerr << "error: " << line << std::endl;
@@ -118,7 +122,7 @@ void Console::progress(std::string_view stage, double done) {
   if (!quiet_) progress_line_.update(stage, done);
 }
 
-void Console::solving() { keep_result_when_interrupted(); }
+void Console::has_result() { keep_result_when_interrupted(); }
 
 Monitor Console::monitor() {
   return {[this](std::string_view stage, double done) { progress(stage, done); }, [this] { return should_stop(); }};

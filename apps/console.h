@@ -34,7 +34,7 @@ class Console : public Observer {
   /// For --verbose and the log.
   void note(const std::string& line) override;
   void progress(std::string_view stage, double done) override;
-  void solving() override;
+  void has_result() override;
   /// After Ctrl-C.
   bool should_stop() const override { return interrupted_.load(); }
 

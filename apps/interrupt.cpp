@@ -46,7 +46,9 @@ extern "C" void on_end(int signal) {
   const int error = errno;
   const bool first = !interrupted.exchange(true);
   const bool stays = has_result.load() && (first || signal == SIGXCPU);  // SIGXCPU comes again every second
-  if (!stays && remove_temporaries()) {
+  if (stays && first) {
+    warn("interrupted: what is solved is about to be written. Once more ends at once, without.\n");
+  } else if (!stays && remove_temporaries()) {
     if (!first) die_of(signal);
     warn("warning: interrupted before there was a result; nothing is written.\n");
     ::_exit(kInterrupted);

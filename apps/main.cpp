@@ -1,13 +1,18 @@
 // clerestory: one program, one command a file in commands/.
 
+#include <exception>
 #include <iostream>
+#include <new>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <unistd.h>
 
 #include "apps/commands/commands.h"
+#include "apps/run.h"
+#include "io/atomic_file.h"
 #include "io/scene_file/nearest_name.h"
+#include "io/text.h"
 #include "solver/model/version.h"
 
 namespace clerestory {
@@ -59,6 +64,21 @@ void open_standard_files() {
     if (::fcntl(number, F_GETFD) < 0) ::open("/dev/null", number == STDIN_FILENO ? O_RDONLY : O_WRONLY);
 }
 
+/// What is thrown where nobody can catch it, as by a thread that a library makes.
+[[noreturn]] void on_terminate() {
+  remove_temporaries();
+  try {
+    if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "error: " << kOutOfMemory << std::endl;
+    ::_exit(kInputRefused);
+  } catch (const std::exception& e) {
+    std::cerr << "error: internal failure: " << e.what() << std::endl;
+  } catch (...) {
+  }
+  ::_exit(kInternalFailure);
+}
+
 int run_program(int argc, char** argv) {
   CLI::App program("Clerestory: where light goes in a building, by radiosity", "clerestory");
   program.set_version_flag("--version", "clerestory " + std::string(kVersion));
@@ -72,7 +92,8 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     return program.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
-    std::cerr << "error: " << usage_problem(program, error) << "\nSee clerestory --help." << std::endl;
+    std::cerr << "error: " << message_line(usage_problem(program, error), 80) << "\nSee clerestory --help."
+              << std::endl;
     return kWrongUsage;
   }
   return task();
@@ -83,5 +104,6 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   clerestory::open_standard_files();
+  std::set_terminate(clerestory::on_terminate);
   return clerestory::run_program(argc, argv);
 }

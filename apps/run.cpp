@@ -7,6 +7,7 @@
 #include <optional>
 #include <system_error>
 
+#include "io/text.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -18,15 +19,10 @@ ExitCode run(const CommonArguments& arguments, const std::string& input, std::ve
     if (console)
       console->fail(message);
     else
-      std::cerr << "error: " << message << std::endl;
+      std::cerr << "error: " << message_line(message) << std::endl;
     return code;
   };
-  const auto out_of_memory = [&] {
-    return fail(
-        "out of memory: not enough for this model at this fineness. Allow more (ulimit -v), or try a larger "
-        "--max-element, or --accuracy draft.",
-        kInputRefused);
-  };
+  const auto out_of_memory = [&] { return fail(kOutOfMemory, kInputRefused); };
   try {
     files.insert(files.begin(), {kInput, input, false});
     files.push_back({"--log", arguments.log});

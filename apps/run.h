@@ -10,6 +10,11 @@
 
 namespace clerestory {
 
+/// What a limit of the system on memory is answered with, and kInputRefused.
+inline constexpr const char* kOutOfMemory =
+    "out of memory: not enough for this model at this fineness. Allow more (ulimit -v), or try a larger --max-element, "
+    "or --accuracy draft.";
+
 /// files  that the command reads or writes beside its input, --log and --report.
 ExitCode run(const CommonArguments& arguments, const std::string& input, std::vector<NamedFile> files,
              const std::function<ExitCode(Console&)>& work);

@@ -149,7 +149,7 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.error_sensors = figures_of(s.error_sensors);
   r.daylight = scene.daylight;
   r.luminaires = luminaires_by_file(scene.lights);
-  r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));
+  if (s.sensor_E.size() > 0) r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));
   r.left_out = what_was_left_out(scene, s);
 }
 

@@ -242,13 +242,13 @@ void AtomicFile::refuse(const std::string& why) const {
       text(clean_text(asked_.string()), ": cannot be written: ", why, "; choose another place for this output."));
 }
 
-std::string AtomicFile::path() const {
-  const std::string open_file = "/proc/self/fd/" + std::to_string(descriptor_);
-  return in_place_ || ::access(open_file.c_str(), W_OK) == 0 ? open_file : temporary_.string();
-}
-
 void AtomicFile::write(std::string_view bytes) {
   if (const int error = write_all(descriptor_, bytes)) refuse(reason(error));
+}
+
+void AtomicFile::write_at(std::uint64_t place, std::string_view bytes) {
+  if (::lseek(descriptor_, static_cast<off_t>(place), SEEK_SET) < 0) refuse(reason(errno));
+  write(bytes);
 }
 
 void AtomicFile::finish() {

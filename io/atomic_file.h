@@ -1,6 +1,7 @@
 #pragma once
 // Files that appear whole or not at all, one alone or several together.
 
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <string>
@@ -26,8 +27,8 @@ class AtomicFile {
   /// Adds to the file.
   /// throws  InputError when the disk is full or a limit of the system is reached.
   void write(std::string_view bytes);
-  /// A name to open the file by before commit(), for libraries that write themselves.
-  std::string path() const;
+  /// The same at a place of the file, for writers that go back.
+  void write_at(std::uint64_t place, std::string_view bytes);
   const std::filesystem::path& destination() const { return asked_; }
   /// throws  InputError as write() does; the old file is untouched then.
   void commit();

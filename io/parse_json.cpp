@@ -22,6 +22,16 @@ std::string line_and_column(std::string_view bytes, std::size_t offset) {
   return text(line, ":", column);
 }
 
+/// "...; last read: 'TOKEN'; expected ...": a token may be as long as the file.
+std::string with_short_token(const std::string& what) {
+  constexpr std::string_view kBefore = "; last read: '";
+  const std::size_t begin = what.find(kBefore), end = what.rfind('\'');
+  if (begin == what.npos || end < begin + kBefore.size()) return quotable(what, 200);
+  const std::string token = what.substr(begin + kBefore.size(), end - begin - kBefore.size());
+  return quotable(what.substr(0, begin), 200) + std::string(kBefore) + quotable(token) +
+         quotable(what.substr(end), 100);
+}
+
 /// Builds a value from the parser's events, and throws InputError at the first one that is out of bounds. The parser's
 /// own builder with a callback looks through the whole array again behind each object in it.
 template <class AnyJson>
@@ -67,9 +77,9 @@ class BoundedBuilder : public nlohmann::json_sax<AnyJson> {
     const std::string what = error.what();
     const bool has_place = dynamic_cast<const typename AnyJson::parse_error*>(&error) != nullptr;
     const std::size_t detail = what.find(has_place ? ": " : "] ");
-    throw InputError(
-        text(file_name_, has_place ? ":" + line_and_column(bytes_, position > 0 ? position - 1 : 0) : "",
-             ": is not valid JSON: ", quotable(detail == what.npos ? what : what.substr(detail + 2), 200)));
+    throw InputError(text(file_name_, has_place ? ":" + line_and_column(bytes_, position > 0 ? position - 1 : 0) : "",
+                          ": is not valid JSON: ",
+                          with_short_token(detail == what.npos ? what : what.substr(detail + 2))));
   }
 
  private:

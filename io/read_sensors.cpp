@@ -101,7 +101,7 @@ SensorPoint point_of(const Cells& cells, const Order& order, const std::string& 
     const std::optional<double> number = number_of(cell);
     if (!number) throw InputError(text(where, kColumns[k], " = '", quotable(cell), "' is not a number"));
     if (!(std::abs(*number) <= 1e12))
-      throw InputError(text(where, kColumns[k], " = ", cell, " is outside [-1e12, 1e12]"));
+      throw InputError(text(where, kColumns[k], " = ", quotable(cell), " is outside [-1e12, 1e12]"));
     value[k] = *number;
   }
   const Vec3 n{value[3], value[4], value[5]};

@@ -10,6 +10,17 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 
+/// Not so: control characters beyond ASCII, blanks without width, marks that turn the direction of writing.
+bool shows(std::string_view character) {
+  if (character.size() == 2 && character[0] == '\xc2') return static_cast<unsigned char>(character[1]) >= 0xa0;
+  if (character.size() != 3) return true;
+  const auto between = [&](std::string_view first, std::string_view last) {
+    return first <= character && character <= last;
+  };
+  return !between("\u200b", "\u200f") && !between("\u2028", "\u202e") && !between("\u2060", "\u206f") &&
+         character != "\ufeff";
+}
+
 }  // namespace
 
 std::string to_lower(std::string_view s) {
@@ -86,9 +97,31 @@ std::string clean_text(std::string_view s) {
 }
 
 std::string quotable(std::string_view s, std::size_t longest) {
-  if (s.size() <= longest) return clean_text(s);
-  while (longest > 0 && (static_cast<unsigned char>(s[longest]) & 0xc0u) == 0x80u) --longest;  // not inside a character
-  return clean_text(s.substr(0, longest)) + "...";
+  // Beyond this, nothing can be among the first `longest` characters of at most 4 bytes.
+  const std::string clean = clean_text(s.substr(0, 4 * longest + 4));
+  std::string quoted;
+  std::size_t i = 0;
+  for (std::size_t count = 0; i < clean.size() && count < longest; ++count) {
+    std::size_t next = i + 1;
+    while (next < clean.size() && (static_cast<unsigned char>(clean[next]) & 0xc0u) == 0x80u) ++next;
+    const std::string_view character = std::string_view(clean).substr(i, next - i);
+    quoted += shows(character) ? character : "?";
+    i = next;
+  }
+  return i < clean.size() || s.size() > 4 * longest + 4 ? quoted + "\u2026" : quoted;
+}
+
+std::string message_line(std::string_view message, std::size_t longest) {
+  std::string line;
+  for (std::size_t begin = 0; begin <= message.size();) {
+    const std::size_t end = std::min(message.find(' ', begin), message.size());
+    const std::string_view word = message.substr(begin, end - begin);
+    const bool path = word.size() <= 4096 && word.find('/') != word.npos;
+    if (begin > 0) line += ' ';
+    line += word.size() > longest && !path ? quotable(word) : clean_text(word);
+    begin = end + 1;
+  }
+  return line;
 }
 
 }  // namespace clerestory

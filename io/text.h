@@ -28,7 +28,10 @@ std::string_view next_line(std::string_view& rest);
 std::optional<double> to_number(std::string_view s);
 /// s with control characters and what is not UTF-8 replaced by '?': fit for messages, XML and JSON.
 std::string clean_text(std::string_view s);
-/// clean_text(s), cut when long.
-std::string quotable(std::string_view s, std::size_t longest = 60);
+/// A message as one line that can be shown: clean_text(), and words of more than `longest` characters cut, for nobody
+/// reads them. Paths stay whole.
+std::string message_line(std::string_view message, std::size_t longest = 200);
+/// What a message may show of a file: clean_text(s), without characters that do not show, cut after so many.
+std::string quotable(std::string_view s, std::size_t longest = 40);
 
 }  // namespace clerestory

@@ -18,7 +18,7 @@ class Observer {
   /// Something that a user should look at: light, energy or error that cannot be trusted, input that was assumed.
   virtual void warn(const std::string& /*line*/) {}
   /// From now on, a run that is ended early returns something.
-  virtual void solving() {}
+  virtual void has_result() {}
   /// True ends the run early: what is solved so far is returned, marked so. Asked from any thread.
   virtual bool should_stop() const { return false; }
 };

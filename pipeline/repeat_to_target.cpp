@@ -75,7 +75,8 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
                               observer.progress(stage, done);
                             },
                         .interrupted = [&] { return observer.should_stop(); },
-                        .deadline = deadline(asked)};
+                        .deadline = deadline(asked),
+                        .has_result = [&] { observer.has_result(); }};
   StageSeconds seconds;
   Settings settings = asked;
   const auto attempt = [&] {

@@ -1,5 +1,7 @@
 #include "pipeline/solve_scene.h"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "pipeline/lap.h"
@@ -13,6 +15,9 @@
 
 namespace clerestory {
 namespace {
+
+/// For an error that is stated after the time limit, too.
+constexpr std::chrono::milliseconds kTimeToMeasure{400};
 
 std::optional<MeasuredError> if_measured(const MeasuredError& error) {
   return error.samples > 0 ? std::optional(error) : std::nullopt;
@@ -31,9 +36,10 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
       asked, observer, [&](Settings& settings, const Monitor& monitor, StageSeconds& seconds) -> std::optional<Solved> {
         // Scene -> patches, rays, lights, sides that light can reach, points to show it on.
         Solved out;
-        std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, monitor, seconds);
+        Monitor preparing = monitor;  // late or not, there is nothing to show before the first round
+        if (!first) preparing.interrupted = [&] { return monitor.should_stop(); };
+        std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, preparing, seconds);
         if (!prepared) return {};
-        observer.solving();
         auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
         const Problem problem = prepared->scene.problem();
         if (std::exchange(first, false)) warn_about_places(problem, scene, sensors, observer);
@@ -49,18 +55,19 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
 
         // -> irradiance at sensors.
         const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, monitor);
-        out.sensor_E = mean_over_planes(sensors, at_planes.E);
+        if (at_planes.complete()) out.sensor_E = mean_over_planes(sensors, at_planes.E);
         solution.rays += at_planes.rays;
         if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
         lap.add_to(seconds.reconstruct);
 
-        // -> how wrong both are.
+        // -> how wrong both are, as far as there is time: a little after the limit, too.
         const ErrorEffort spend = effort(options.accuracy, options.tighten).error;
-        if (!monitor.should_stop())
-          out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, monitor));
-        if (!monitor.should_stop() && !sensors.planes.empty())
-          out.error_sensors = if_measured(
-              measure_sensor_error(problem, sensors.planes, at_planes.E, spend, solution.rays, options.seed, monitor));
+        Monitor measuring = monitor;
+        measuring.deadline = std::max(measuring.deadline, std::chrono::steady_clock::now() + kTimeToMeasure);
+        out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, measuring));
+        if (at_planes.complete())
+          out.error_sensors = if_measured(measure_sensor_error(problem, sensors.planes, at_planes.E, spend,
+                                                               solution.rays, options.seed, measuring));
         if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
         lap.add_to(seconds.measure);
 

@@ -20,7 +20,7 @@ struct Solved {
   PatchSet patches;         ///< the elements
   VertexLightmap lightmap;  ///< of the elements, E filled
   Solution solution;        ///< of the elements
-  Field sensor_E;           ///< S x channels, by sensor of all sets, one set after the other [W/m2]
+  Field sensor_E;  ///< S x channels, by sensor of all sets, one set after the other [W/m2]; empty: there was no time
   std::optional<MeasuredError> error, error_sensors;  ///< empty when not measured
   MeshReport repairs;
   LitSides lit_sides;

@@ -125,11 +125,14 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
 
   const ExitCode code = exit_code(solved);
   say_why(code, solved, console);
+  if (has_sensors && solved.sensor_E.size() == 0)
+    console.warn("there was no time for the sensors; " + sensors_output(arguments).string() + " is not written.");
   report.seconds.read = read, report.seconds.write = write;
   finish_report(report, arguments.common, console, outputs);
   say_summary(report, solved, console);
   console.commit(outputs);
-  console.say("  results " + arguments.output + (has_sensors ? ", " + sensors_output(arguments).string() : "") +
+  console.say("  results " + arguments.output +
+              (solved.sensor_E.size() > 0 ? ", " + sensors_output(arguments).string() : "") +
               (arguments.common.report.empty() ? "" : ", " + arguments.common.report));
   return code;
 }

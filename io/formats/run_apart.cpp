@@ -45,11 +45,15 @@ void limit(decltype(RLIMIT_CORE) what, std::uint64_t value) {
 }
 
 [[noreturn]] void be_the_child(const std::function<std::string()>& work, const ApartLimits& limits, int out,
-                               std::uint64_t mapped) {
+                               std::uint64_t mapped, pid_t parent) {
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // a child nobody waits for should not go on
 #endif
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE}) std::signal(signal, SIG_DFL);
+  if (getppid() != parent) _exit(kExitFailed);
+  // What signals do in the parent is not for the child: it owns no files. Ctrl-C reaches both, and the parent decides.
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE, SIGTERM, SIGXCPU, SIGXFSZ, SIGALRM})
+    std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGHUP}) std::signal(signal, SIG_IGN);
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
   limit(RLIMIT_CORE, 0);
@@ -95,7 +99,7 @@ std::string run_apart(const std::function<std::string()>& work, const ApartLimit
   int pipe_ends[2];
   if (pipe(pipe_ends) != 0) throw std::runtime_error(text("cannot make a pipe: ", std::strerror(errno)));
   const std::uint64_t mapped = mapped_bytes();
-  const pid_t child = fork();
+  const pid_t parent = getpid(), child = fork();
   if (child < 0) {
     const int error = errno;
     close(pipe_ends[0]);
@@ -104,7 +108,7 @@ std::string run_apart(const std::function<std::string()>& work, const ApartLimit
   }
   if (child == 0) {
     close(pipe_ends[0]);
-    be_the_child(work, limits, pipe_ends[1], mapped);
+    be_the_child(work, limits, pipe_ends[1], mapped, parent);
   }
   close(pipe_ends[1]);
   std::string answer;

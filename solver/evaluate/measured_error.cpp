@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <stdexcept>
 
 #include "solver/gather/gather.h"
@@ -60,40 +62,56 @@ MeasuredError summarise(std::span<const Comparison> samples) {
 
 namespace {
 
-/// Traces paths for references at the places of samples whose x is set, as many as the effort allows.
+struct References {
+  std::vector<Comparison> at;  ///< those that were finished
+  unsigned long long rays = 0;
+  bool complete = false;
+};
+
+/// Traces paths for references at the places of samples whose x is set, as many as the effort allows. Stopped by the
+/// monitor, it takes those that are there.
 MeasuredError compare(const Problem& problem, const std::vector<Comparison>& samples, const PointOf& point_of,
                       const ErrorEffort& effort, unsigned long long rays_spent, std::uint64_t key,
                       const Monitor& monitor) {
   const Illumination light(problem);
-  const auto reference = [&](std::size_t i, std::uint64_t stream, int paths, unsigned long long& rays) {
-    const auto [p, n] = point_of(i);
-    return trace_paths_at_point(light, p, n, stream_key(stream, i), paths, rays);
+  // In parts, not by points: where paths have millions of bounces there are few points, and each takes a minute.
+  const auto trace = [&](std::size_t count, std::uint64_t stream, int paths, const auto& sample_of) {
+    std::vector<Spectrum> mean(count * kReplicates);
+    std::vector<char> finished(count * kReplicates);
+    constexpr std::size_t kBlock = 32 * kReplicates;
+    const auto blocks =
+        parallel_blocks(mean.size(), kBlock, 1, "error", monitor, [&](std::size_t from, std::size_t to) {
+          unsigned long long rays = 0;
+          for (std::size_t t = from; t < to; ++t) {
+            const std::size_t i = sample_of(t / kReplicates);
+            const auto [p, n] = point_of(i);
+            mean[t] = trace_replicate(light, p, n, stream_key(stream, i), t % kReplicates, paths, rays, monitor);
+            finished[t] = !monitor.should_stop();
+          }
+          return rays;
+        });
+    References references{{}, blocks.rays, blocks.done == mean.size()};
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto first = static_cast<std::ptrdiff_t>(k * kReplicates);
+      if (std::count(finished.begin() + first, finished.begin() + first + std::ptrdiff_t{kReplicates}, 0) > 0) continue;
+      const auto [E, std_error] =
+          estimate_of(std::span<const Spectrum, kReplicates>(&mean[k * kReplicates], kReplicates));
+      references.at.push_back({samples[sample_of(k)].x, luminous_mean(E), luminous_mean(std_error)});
+    }
+    return references;
   };
 
-  unsigned long long pilot_rays = 0;
-  std::size_t pilots = 0;
-  for (std::size_t i = 0; i < samples.size(); i += samples.size() / kFewestPoints + 1, ++pilots)
-    reference(i, key + 1, kPilotPaths, pilot_rays);
-  const double rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(pilots * kPilotPaths);
+  const std::size_t step = samples.size() / kFewestPoints + 1, pilots = (samples.size() + step - 1) / step;
+  const References pilot = trace(pilots, key + 1, kPilotPaths, [&](std::size_t k) { return k * step; });
+  if (!pilot.complete) return summarise(pilot.at);
+  const double rays_per_path = static_cast<double>(pilot.rays) / static_cast<double>(pilots * kPilotPaths);
   const double affordable =  // paths in all
       std::max(kShareOfRays * static_cast<double>(rays_spent), effort.rays) / rays_per_path;
   const double points = static_cast<double>(std::min(samples.size(), effort.points));
   const int paths = std::clamp(static_cast<int>(affordable / points), kFewestPaths, effort.paths);
   const auto count = std::min(samples.size(), std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));
-
-  std::vector<Comparison> measured(count);
-  constexpr std::size_t kBlock = 32;
-  const auto blocks = parallel_blocks(count, kBlock, 1, "error", monitor, [&](std::size_t from, std::size_t to) {
-    unsigned long long rays = 0;
-    for (std::size_t k = from; k < to; ++k) {
-      const std::size_t i = k * samples.size() / count;
-      const auto [E, std_error] = reference(i, key, paths, rays);
-      measured[k] = {samples[i].x, luminous_mean(E), luminous_mean(std_error)};
-    }
-    return rays;
-  });
-  measured.resize(blocks.done);
-  return summarise(measured);
+  const References all = trace(count, key, paths, [&](std::size_t k) { return k * samples.size() / count; });
+  return summarise(all.at.size() < pilot.at.size() ? pilot.at : all.at);
 }
 
 }  // namespace

@@ -250,7 +250,10 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   HierarchicalSolution early;
   const bool hurry = monitor.deadline != Monitor{}.deadline;
   std::vector<std::uint32_t> returned = mesh.leaves();  // the elements of what is returned
-  if (hurry) early = early_picture(problem, mesh, options, false, monitor);
+  if (hurry) {
+    early = early_picture(problem, mesh, options, false, monitor);
+    monitor.say_result();
+  }
 
   std::unique_ptr<Round> last;
   std::vector<std::string> log = early.solution.log;
@@ -260,6 +263,7 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     if (!round.complete) return false;
     log.insert(log.end(), round.result.solution.log.begin(), round.result.solution.log.end());
     last = std::make_unique<Round>(std::move(round));
+    monitor.say_result();
     return !monitor.should_stop();
   };
 

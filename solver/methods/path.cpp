@@ -1,6 +1,7 @@
 #include "solver/methods/path.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "solver/model/parallel.h"
 #include "solver/model/streams.h"
@@ -23,13 +24,11 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
   constexpr int kRound = 16;
   int done = 0;
   constexpr std::size_t kBlock = 1 << 12;
+  Monitor patient = monitor;  // the first round gets a little more time: every patch needs a value
+  if (monitor.deadline != Monitor{}.deadline) patient.deadline += std::chrono::seconds(1);
   for (; done < options.paths && solution.stop == StopReason::converged; done += kRound) {
+    const Monitor& asked = done == 0 ? patient : monitor;
     for (std::size_t begin = 0; begin < n; begin += kBlock) {
-      // The first round is finished whatever the clock says: every patch needs a value.
-      if (monitor.is_interrupted() || (done > 0 && monitor.is_late())) {
-        solution.stop = why_stopped(monitor);
-        break;
-      }
       monitor.report("paths", (done + kRound * static_cast<double>(begin) / static_cast<double>(n)) / options.paths);
       parallel_for(std::min(kBlock, n - begin), 16, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = begin + from; i < begin + to; ++i) {
@@ -41,10 +40,16 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
             RandomStream random(key, static_cast<std::uint64_t>(k), 1);
             const Vec3 start = problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), normal);
             const PathStart first = path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), key);
-            sums[i].add(trace_path(light, start, normal, first, random, rays[i]));
+            const Spectrum E = trace_path(light, start, normal, first, random, rays[i], asked);
+            if (asked.should_stop()) return;
+            sums[i].add(E);
           }
         }
       });
+      if (asked.should_stop()) {
+        solution.stop = why_stopped(monitor);
+        break;
+      }
     }
   }
 
@@ -52,7 +57,7 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
   solution.energy = direct.energy;
   solution.energy.emitted += total_flux(patches, patches.M);
   solution.rays = direct.rays + closure.rays;
-  for (std::size_t i = 0; i < n; ++i) solution.E.set(i, sums[i].mean());
+  for (std::size_t i = 0; i < n; ++i) solution.E.set(i, sums[i].count > 0 ? sums[i].mean() : direct.E[i]);
   for (std::size_t i = 0; i < n; ++i) {
     const Spectrum B = patches.M[i] + patches.scattered(solution.E, i);
     solution.B.set(i, B);

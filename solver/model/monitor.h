@@ -14,8 +14,14 @@ struct Monitor {
   std::function<bool()> interrupted;
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 
+  /// Called once there is something to return: from then on a run that is stopped early was not for nothing.
+  std::function<void()> has_result{};
+
   void report(std::string_view stage, double done) const {
     if (progress) progress(stage, done);
+  }
+  void say_result() const {
+    if (has_result) has_result();
   }
   bool is_interrupted() const { return interrupted && interrupted(); }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline; }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <new>
+#include <stdexcept>
+#include <string_view>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -29,9 +32,15 @@ void on_one_thread(const std::function<void()>& body) {
 
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (n == 0) return;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) { body(range.begin(), range.end()); },
-      tbb::simple_partitioner());
+  try {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) { body(range.begin(), range.end()); },
+        tbb::simple_partitioner());
+  } catch (const std::runtime_error& e) {
+    // TBB says this, and nothing more exact, when there is no memory for the stack of a thread.
+    if (std::string_view(e.what()).starts_with("pthread_create")) throw std::bad_alloc();
+    throw;
+  }
 }
 
 Blocks parallel_blocks(std::size_t n, std::size_t block, std::size_t grain, std::string_view stage,
@@ -42,7 +51,10 @@ Blocks parallel_blocks(std::size_t n, std::size_t block, std::size_t grain, std:
   while (done < n && !monitor.should_stop()) {
     monitor.report(stage, static_cast<double>(done) / static_cast<double>(n));
     const std::size_t count = std::min(block, n - done);
-    parallel_for(count, grain, [&](std::size_t from, std::size_t to) { rays += body(done + from, done + to); });
+    parallel_for(count, grain, [&](std::size_t from, std::size_t to) {
+      if (!monitor.should_stop()) rays += body(done + from, done + to);
+    });
+    if (monitor.should_stop()) break;
     done += count;
   }
   return {done, rays};

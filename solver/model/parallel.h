@@ -21,8 +21,9 @@ void on_one_thread(const std::function<void()>& body);
 void parallel_for(std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// The same in blocks of `block`, one after another; before each, progress of the stage is reported and the monitor
-/// asked whether to go on. Bodies return the rays they sent.
+/// The same in blocks of `block`, one after another; before each, progress of the stage is reported. The monitor is
+/// asked before each range whether to go on; a block that it stopped does not count as done. Bodies return the rays
+/// they sent.
 struct Blocks {
   std::size_t done = 0;  ///< the first so many indices were visited; less than n: the monitor stopped it
   unsigned long long rays = 0;

@@ -1,5 +1,6 @@
 #include "solver/paths/path_tracer.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -65,12 +66,14 @@ PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, st
 }
 
 Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
-                    unsigned long long& rays) {
+                    unsigned long long& rays, const Monitor& monitor) {
   const Problem& problem = light.problem;
   const PatchSet& patches = problem.patches;
   Spectrum E(0.0), throughput(1.0);
   auto [square, choice, opening] = start;
-  while (true) {
+  constexpr unsigned kBouncesBetween = 1 << 12;  // some milliseconds
+  for (unsigned bounce = 1;; ++bounce) {
+    if (bounce % kBouncesBetween == 0 && monitor.should_stop()) return E;
     if (!light.sampler.empty()) E += throughput * one_light(light, p, n, choice, rays);
     if (!light.openings.empty()) E += throughput * through_opening(light, p, n, opening, rays);
     const double survival = std::min(1.0, throughput.max() / kSafe);
@@ -102,24 +105,34 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   }
 }
 
-PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
-                                  unsigned long long& rays) {
-  constexpr int kReplicates = 8;
-  const int in_each = (paths + kReplicates - 1) / kReplicates;
-  PathSum replicates;
+Spectrum trace_replicate(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, std::size_t r,
+                         int paths, unsigned long long& rays, const Monitor& monitor) {
   CLERESTORY_ASSERT(paths, >, 0);
-  for (int r = 0; r < kReplicates; ++r) {
-    const std::uint64_t replicate = stream_key(key, static_cast<std::uint64_t>(r));
-    Spectrum sum(0.0);
-    for (int k = 0; k < in_each; ++k) {
-      const auto u = sobol4(static_cast<std::uint32_t>(k), replicate);
-      RandomStream random(replicate, static_cast<std::uint64_t>(k));
-      sum += trace_path(light, p, n, path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), replicate), random, rays);
-    }
-    replicates.add(sum / in_each);
+  const int in_each = (paths + static_cast<int>(kReplicates) - 1) / static_cast<int>(kReplicates);
+  const std::uint64_t replicate = stream_key(key, r);
+  Spectrum sum(0.0);
+  for (int k = 0; k < in_each; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), replicate);
+    RandomStream random(replicate, static_cast<std::uint64_t>(k));
+    sum += trace_path(light, p, n, path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), replicate), random, rays,
+                      monitor);
   }
-  CLERESTORY_ASSERT(all_finite(replicates.sum_of_squares), ==, true);
-  return {replicates.mean(), replicates.std_error()};
+  return sum / in_each;
+}
+
+PathEstimate estimate_of(std::span<const Spectrum, kReplicates> replicates) {
+  PathSum all;
+  for (const Spectrum& mean : replicates) all.add(mean);
+  CLERESTORY_ASSERT(all_finite(all.sum_of_squares), ==, true);
+  return {all.mean(), all.std_error()};
+}
+
+PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
+                                  unsigned long long& rays, const Monitor& monitor) {
+  std::array<Spectrum, kReplicates> replicates;
+  for (std::size_t r = 0; r < kReplicates; ++r)
+    replicates[r] = trace_replicate(light, p, n, key, r, paths, rays, monitor);
+  return estimate_of(replicates);
 }
 
 PointIrradiance trace_paths_at(const Illumination& light, std::size_t count, const PointOf& point_of, int paths,
@@ -131,7 +144,7 @@ PointIrradiance trace_paths_at(const Illumination& light, std::size_t count, con
     unsigned long long rays = 0;
     for (std::size_t i = from; i < to; ++i) {
       const ReceivingPoint at = point_of(i);
-      const auto [E, std_error] = trace_paths_at_point(light, at.p, at.n, stream_key(key, i), paths, rays);
+      const auto [E, std_error] = trace_paths_at_point(light, at.p, at.n, stream_key(key, i), paths, rays, monitor);
       result.E.set(i, E);
       result.std_error.set(i, std_error);
     }

@@ -1,6 +1,8 @@
 #pragma once
 // One random path: the unbiased estimate that judges all other methods.
 
+#include <span>
+
 #include "solver/illumination/illumination.h"
 #include "solver/model/monitor.h"
 #include "solver/model/point_irradiance.h"
@@ -39,17 +41,25 @@ PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, st
 /// paths that carry little, so there is no bias; it comes after the shadow ray and late, because ending a path in two
 /// halves and doubling the other is most of the noise.
 ///
-/// rays   is raised by the rays traced.
+/// rays     is raised by the rays traced.
+/// monitor  asked now and then, for a path may have millions of bounces. Ask it, too: a path that it stopped is worth
+///          nothing.
 Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
-                    unsigned long long& rays);
+                    unsigned long long& rays, const Monitor& monitor = {});
 
 /// Irradiance at the fixed point p and its standard error, from independent replicates of stratified paths: the spread
 /// between replicates counts what stratification gains, which the spread of single paths does not.
 struct PathEstimate {
   Spectrum E, std_error;
 };
+inline constexpr std::size_t kReplicates = 8;
 PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
-                                  unsigned long long& rays);
+                                  unsigned long long& rays, const Monitor& monitor = {});
+
+/// The same in parts, for a loop over them: the mean of replicate r < kReplicates, and what all of them say.
+Spectrum trace_replicate(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, std::size_t r,
+                         int paths, unsigned long long& rays, const Monitor& monitor = {});
+PathEstimate estimate_of(std::span<const Spectrum, kReplicates> replicates);
 
 /// The same at each of `count` places.
 PointIrradiance trace_paths_at(const Illumination& light, std::size_t count, const PointOf& point_of, int paths,

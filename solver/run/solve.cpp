@@ -1,6 +1,7 @@
 #include "solver/run/solve.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -111,6 +112,9 @@ PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, 
                    stage, monitor);
 }
 
+/// What stopped solves take to show a rough value at their sensors.
+constexpr std::chrono::milliseconds kTimeForSensors{500};
+
 }  // namespace
 
 double target_triangles(const SolveOptions& options) {
@@ -135,11 +139,13 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
     monitor.report("closure", 0);
     return measure_closure(problem.patches, problem.rays, monitor.should_stop() ? kLate : e.closure_rays, options.seed);
   };
-  if (options.method == Method::path) return path_trace(light, direct, closure(), {e.paths, options.seed}, monitor);
-  if (options.method == Method::progressive) {
+  if (options.method == Method::path || options.method == Method::progressive) {
+    const Closure of_patches = closure();
+    monitor.say_result();  // direct light, and an estimate of what follows from it
+    if (options.method == Method::path) return path_trace(light, direct, of_patches, {e.paths, options.seed}, monitor);
     constexpr double kFewestRays = 64;  // a patch met by fewer is known to worse than 12 %
     Solution solution =
-        shoot(problem, direct, closure(),
+        shoot(problem, direct, of_patches,
               {.stop_fraction = e.stop_fraction, .rays_per_patch = e.rays_per_patch, .seed = options.seed}, monitor);
     const std::size_t gathered =
         gather_noisy_patches(problem, solution, kFewestRays, e.noisy_patches, options.seed, monitor);
@@ -148,6 +154,7 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
   }
   const FormFactorMatrix F =
       form_factor_matrix(problem.patches, problem.rays, matrix_options(problem.patches, options), monitor);
+  monitor.say_result();
   const auto gather = options.method == Method::jacobi ? jacobi : gauss_seidel;
   Solution solution = gather(problem.patches, F, direct.E, {}, monitor);
   count_luminaires(solution.energy, problem.patches, direct);
@@ -199,6 +206,7 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
   if (!at_points.complete()) {
     Monitor patient;
     patient.progress = monitor.progress;
+    patient.deadline = std::chrono::steady_clock::now() + kTimeForSensors;
     at_points = by(effort(Accuracy::draft, options.tighten), patient);
   }
   require_sound(at_points.E, "irradiance at the sensors");

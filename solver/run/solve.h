@@ -53,8 +53,9 @@ SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_e
 /// irradiance of every patch.
 Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor = {});
 
-/// Irradiance at each sensor point itself, by gather_point(), or by paths where these are the method. Every point gets
-/// a value, however little time there is: a rough one when the monitor stops the good ones.
+/// Irradiance at each sensor point itself, by gather_point(), or by paths where these are the method. When the monitor
+/// stops it, half a second is spent on rough values; where that is not enough for all points, the answer is not
+/// complete.
 ///
 /// problem  with the elements that the solution belongs to. points: in the scene's frame.
 PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& solution,

@@ -25,7 +25,10 @@ constexpr double kFineLift = 1e-10;  // of the diameter: meshing keeps nothing a
 struct Device {
   RTCDevice handle = rtcNewDevice("set_affinity=0");
   Device() {
-    if (!handle) throw std::runtime_error("Embree: no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
+    if (handle) return;
+    const RTCError error = rtcGetDeviceError(nullptr);
+    if (error == RTC_ERROR_UNSUPPORTED_CPU) throw std::runtime_error("Embree does not run on this processor");
+    throw std::bad_alloc();  // it wants memory and threads, and says "unknown" for both
   }
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -66,6 +69,7 @@ struct Surfaces {
       rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(handle);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::bad_alloc();
   }
 };
 

@@ -53,7 +53,11 @@ TEST_F(BadUsage, ExitsTwoAndSuggestsTheNearestName) {
     expect_refusal({"solve", scene_, "-o", out_, "--memory-limit", value}, 2, {"--memory-limit", "2GiB"});
   for (const char* value : {"-1", "two", "100000", "1e99"})
     expect_refusal({"solve", scene_, "-o", out_, "--threads", value}, 2, {"--threads"});
-  expect_refusal({"solve", scene_, "-o", out_, "--seed", "blue"}, 2, {"--seed"});
+  for (const char* value : {"blue", "-1", "1.5", "", "9223372036854775808"})
+    expect_refusal({"solve", scene_, "-o", out_, "--seed", value}, 2, {"--seed"});
+  const ProgramRun run = run_program({"solve", scene_, "-o", out_, "--threads", std::string(100'000, '9')});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_LT(run.err.size(), 1'000u) << "words that are long are cut";
 }
 
 TEST_F(BadUsage, AnOutputThatCannotBeWrittenIsRefusedBeforeSolving) {

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <signal.h>
 
 #include "solver/model/units.h"
 #include "tests/support/box_scene.h"
@@ -345,77 +344,6 @@ TEST(Solve, QuietSaysNothingAndTheLogSaysAll) {
   const ProgramRun normal = solve(scene, folder / "out.vtp", {"--max-element", "1"});
   for (const char* word : {"elements", "energy", "error", "time", "out.vtp"})
     EXPECT_NE(normal.out.find(word), std::string::npos) << word;
-}
-
-/// Paths go over all elements in rounds; from the first of them on there is something to write.
-std::vector<std::string> solve_by_paths(const std::string& output, const std::string& max_element) {
-  return {"solve",
-          shipped_scene("office.json"),
-          "-o",
-          output,
-          "--method",
-          "path",
-          "--accuracy",
-          "draft",
-          "--max-element",
-          max_element};
-}
-
-/// A solve with half a minute of paths before it.
-class LongRun {
- public:
-  explicit LongRun(const std::string& output) : program_(arguments(output)) {}
-
-  /// Sends the signal once paths are under way.
-  ProgramRun signalled(int number) {
-    EXPECT_TRUE(program_.waits_for("] paths", log())) << "it ended without";
-    program_.signal(number);
-    return program_.wait();
-  }
-
- private:
-  std::string log() const { return elsewhere_ / "log"; }
-  std::vector<std::string> arguments(const std::string& output) const {
-    std::vector<std::string> words = solve_by_paths(output, "0.1");
-    words.insert(words.end(), {"--log", log()});
-    return words;
-  }
-  TempFolder elsewhere_;
-  Program program_;
-};
-
-TEST(Interrupt, CtrlCWritesWhatThereIsAndExitsFive) {
-  const TempFolder folder;
-  const ProgramRun run = LongRun(folder / "out.vtp").signalled(SIGINT);
-  EXPECT_EQ(run.exit_code, 5) << run.err;
-  const ResultFile result = read_result(folder / "out.vtp");
-  EXPECT_GT(result.triangles.size(), 10'000u);
-  expect_all_finite(result.of_cells);
-  expect_all_finite(result.of_points);
-  EXPECT_EQ(result.texts.at("stop"), std::vector<std::string>{"interrupted"});
-  EXPECT_EQ(folder.listing(), "out.sensors.csv out.vtp ");
-}
-
-TEST(Interrupt, AKilledRunLeavesNoHalfFileAndTheOldResultAlone) {
-  const TempFolder folder;
-  folder.write("out.vtp", "the result of yesterday");
-  EXPECT_EQ(LongRun(folder / "out.vtp").signalled(SIGKILL).exit_code, 128 + SIGKILL);
-  EXPECT_EQ(read_text(folder / "out.vtp"), "the result of yesterday");
-  EXPECT_EQ(folder.listing(), "out.vtp ");
-}
-
-TEST(TimeLimit, ReachedBeforeTheEndIsExitFourWithAResult) {
-  // No machine has done by then, so the first round of paths is all there is, on every machine.
-  const TempFolder folder;
-  auto arguments = solve_by_paths(folder / "out.vtp", "0.3");
-  arguments.insert(arguments.end(), {"--time-limit", "0.001"});
-  const ProgramRun run = run_program(arguments);
-  EXPECT_EQ(run.exit_code, 4) << run.err;
-  EXPECT_NE(run.err.find("time limit of 0.001"), std::string::npos) << run.err;
-  const ResultFile result = read_result(folder / "out.vtp");
-  EXPECT_EQ(result.texts.at("stop"), std::vector<std::string>{"time-limit"});
-  const auto& E = result.of_cells.at("irradiance").values;
-  EXPECT_GT(*std::max_element(E.begin(), E.end()), 0);
 }
 
 TEST(TargetError, IsReachedByRefiningOrSaidToBeMissed) {

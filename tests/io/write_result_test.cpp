@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -211,6 +213,48 @@ TEST(AtomicFile, ALinkIsFollowedAndASpecialFileIsWrittenInPlace) {
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
   EXPECT_NO_THROW(write_file("/dev/null", "nothing"));
   EXPECT_FALSE(std::filesystem::is_regular_file("/dev/null"));
+}
+
+TEST(AtomicFile, HasANameThatNobodyCanPrepareALinkFor) {
+  const TempFolder folder;
+  std::set<std::string> names;
+  for (int k = 0; k < 8; ++k) {
+    AtomicFile file(folder / "a.txt");
+    names.insert(folder.listing());
+  }
+  EXPECT_EQ(names.size(), 8u);
+}
+
+TEST(Outputs, ReplaceNoFileWhenOneOfThemCannotBe) {
+  const TempFolder folder;
+  folder.write("a.txt", "old");
+  {
+    Outputs outputs;
+    outputs.open(folder / "a.txt").write("new");
+    outputs.open(folder / "b.txt").write("new");
+    outputs.open(folder / "c.txt").write("new");
+    std::filesystem::create_directory(folder / "c.txt");  // came meanwhile
+    EXPECT_THROW(outputs.commit(), InputError);
+    EXPECT_EQ(read_text(folder / "a.txt"), "old");
+    EXPECT_FALSE(std::filesystem::exists(folder / "b.txt"));
+  }
+  EXPECT_EQ(folder.listing(), "a.txt c.txt ");
+  Outputs outputs;
+  outputs.open(folder / "a.txt").write("new");
+  outputs.open(folder / "b.txt").write("new");
+  EXPECT_EQ(read_text(folder / "a.txt"), "old") << "not before commit()";
+  outputs.commit();
+  EXPECT_EQ(read_text(folder / "a.txt") + read_text(folder / "b.txt"), "newnew");
+  EXPECT_EQ(folder.listing(), "a.txt b.txt c.txt ");
+}
+
+TEST(Outputs, AreRemovedByWhatSignalHandlersCall) {
+  const TempFolder folder;
+  Outputs outputs;
+  outputs.open(folder / "a.txt"), outputs.open(folder / "b.txt");
+  EXPECT_NE(folder.listing(), "");
+  EXPECT_TRUE(remove_temporaries());
+  EXPECT_EQ(folder.listing(), "");
 }
 
 TEST(AtomicFile, PlacesThatCannotBeWrittenAreRefusedWithTheReason) {

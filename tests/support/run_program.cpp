@@ -19,11 +19,11 @@ void redirect(int to, const std::string& file) {
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& arguments) {
-  std::string name = CLERESTORY_PROGRAM;
-  std::vector<std::string> words = arguments;
+Program::Program(const std::vector<std::string>& arguments) : Program(CLERESTORY_PROGRAM, arguments) {}
+
+Program::Program(std::string name, std::vector<std::string> arguments) {
   std::vector<char*> argv{name.data()};
-  for (std::string& word : words) argv.push_back(word.data());
+  for (std::string& word : arguments) argv.push_back(word.data());
   argv.push_back(nullptr);
   const std::string out = folder_ / "out", err = folder_ / "err";
   process_ = ::fork();
@@ -64,6 +64,10 @@ ProgramRun Program::wait() {
 }
 
 ProgramRun run_program(const std::vector<std::string>& arguments) { return Program(arguments).wait(); }
+
+ProgramRun run_by_shell(const std::string& line) {
+  return Program("/bin/sh", {"-c", "CLERESTORY=" CLERESTORY_PROGRAM "; " + line}).wait();
+}
 
 std::string shipped_scene(const std::string& name) { return CLERESTORY_SOURCE_DIR "/data/scenes/" + name; }
 

@@ -19,6 +19,8 @@ struct ProgramRun {
 class Program {
  public:
   explicit Program(const std::vector<std::string>& arguments);
+  /// Another program in place of ours.
+  Program(std::string name, std::vector<std::string> arguments);
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -36,6 +38,9 @@ class Program {
 };
 
 ProgramRun run_program(const std::vector<std::string>& arguments);
+
+/// Runs a line of /bin/sh in which $CLERESTORY is the program: for limits, redirections and pipes.
+ProgramRun run_by_shell(const std::string& line);
 
 /// A scene shipped with the program.
 std::string shipped_scene(const std::string& name);

@@ -6,7 +6,7 @@
 
 #include "io/scene_file/nearest_name.h"
 #include "pipeline/wording.h"
-#include "solver/gather/gather.h"
+#include "solver/evaluate/buried_points.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/error.h"
 
@@ -82,13 +82,16 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
     observer.warn(scene.file + ": materials '" + name + "' " + why_unused(name, scene));
 }
 
-void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Observer& observer) {
+std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,
+                                           Observer& observer) {
   for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
     if (luminaire.mirror == kNoMirror) warn_about_luminaire(problem, luminaire.name, luminaire.position, observer);
-  const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
+  std::vector<std::size_t> planes = buried_points(problem, sensors.planes);
+  const auto buried = sensors_of(sensors, planes);
   if (!buried.empty())
     observer.warn(scene.file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +
-                  ") inside a solid or on a surface; what arrives there means little.");
+                  ") inside a solid; what arrives there means little.");
+  return planes;
 }
 
 }  // namespace clerestory

@@ -1,8 +1,11 @@
 #include "pipeline/solve_scene.h"
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "pipeline/lap.h"
+#include "pipeline/panel_hints.h"
 #include "pipeline/prepare.h"
 #include "pipeline/repeat_to_target.h"
 #include "pipeline/require_valid.h"
@@ -17,6 +20,26 @@ std::optional<MeasuredError> if_measured(const MeasuredError& error) {
   return error.samples > 0 ? std::optional(error) : std::nullopt;
 }
 
+struct PlanesAndE {
+  std::vector<SensorPoint> planes;
+  Field E;
+};
+
+/// All but those with the given numbers, ascending.
+PlanesAndE without(const std::vector<std::size_t>& numbers, const std::vector<SensorPoint>& planes, const Field& E) {
+  PlanesAndE rest{{}, Field(planes.size() - numbers.size(), E.channels)};
+  auto next = numbers.begin();
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (next != numbers.end() && *next == i) {
+      ++next;
+      continue;
+    }
+    rest.E.set(rest.planes.size(), E[i]);
+    rest.planes.push_back(planes[i]);
+  }
+  return rest;
+}
+
 }  // namespace
 
 Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer) {
@@ -25,8 +48,9 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
   require_light(scene);
   const SensorPlanes sensors = planes_of(scene.sensors);
 
-  bool first = true;
-  return repeat_to_target(
+  std::optional<std::vector<std::size_t>> buried;  // once the first patches are there
+  std::vector<std::string> hints;
+  Solved result = repeat_to_target(
       asked, observer, [&](Settings& settings, const Monitor& monitor, StageSeconds& seconds) -> std::optional<Solved> {
         // Scene -> patches, rays, lights, sides that light can reach, points to show it on.
         Solved out;
@@ -34,7 +58,10 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         if (!prepared) return {};
         auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
         const Problem problem = prepared->scene.problem();
-        if (std::exchange(first, false)) warn_about_places(problem, scene, sensors, observer);
+        if (!buried) {
+          buried = warn_about_places(problem, scene, sensors, observer);
+          hints = hints_about_panels(problem);
+        }
 
         // -> radiosity of elements, irradiance at vertices.
         Lap lap;
@@ -56,9 +83,12 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         const ErrorEffort spend = effort(options.accuracy, options.tighten).error;
         if (!monitor.should_stop())
           out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, monitor));
-        if (!monitor.should_stop() && !sensors.planes.empty())
-          out.error_sensors = if_measured(
-              measure_sensor_error(problem, sensors.planes, at_planes.E, spend, solution.rays, options.seed, monitor));
+        if (!monitor.should_stop()) {
+          const auto [planes, E] = without(*buried, sensors.planes, at_planes.E);
+          out.error_sensors =
+              if_measured(measure_sensor_error(problem, planes, E, spend, solution.rays, options.seed, monitor));
+        }
+        out.buried_sensors = sensors_of(sensors, *buried).size();
         if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
         lap.add_to(seconds.measure);
 
@@ -70,6 +100,8 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         out.lit_sides = std::move(lit_sides);
         return out;
       });
+  for (const std::string& hint : hints) observer.warn(scene.file + ": " + hint);  // last, where it is seen
+  return result;
 }
 
 Solved solve_scene(const Scene& scene, const Settings& settings) {

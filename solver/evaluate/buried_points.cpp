@@ -30,7 +30,7 @@ bool sees_the_dark(const Problem& problem, const ReceivingPoint& at, std::uint64
 
 bool is_in_solid(const Problem& problem, const Vec3& p, std::uint64_t key) {
   const PatchSet& patches = problem.patches;
-  std::uint32_t dark = 0, backs = 0;
+  std::uint32_t dark = 0, backs = 0, lit_beyond = 0;
   bool one_surface = true;
   SurfaceId surface;
   Vec3 lower = p, upper = p;
@@ -46,6 +46,7 @@ bool is_in_solid(const Problem& problem, const Vec3& p, std::uint64_t key) {
     const bool joined = !patches.joined.empty() && patches.joined[hit.triangle];
     const Side side = dot(n, hit.direction(ray)) < 0 ? kFront : kBack;
     backs += side == kBack && !joined;
+    lit_beyond += patches.side_patch[hit.triangle][side == kFront ? kBack : kFront].valid();
     const SurfaceId seen = patches.side_surface[hit.triangle][side];
     one_surface = one_surface && (!surface.valid() || seen.value == surface.value);
     surface = seen;
@@ -56,7 +57,8 @@ bool is_in_solid(const Problem& problem, const Vec3& p, std::uint64_t key) {
   if (4 * dark < 3 * kRaysAround) return false;
   const Vec3 size = upper - lower;
   const double least = std::min({size.x, size.y, size.z});
-  return 2 * backs > dark ? one_surface || least < kRoomy : least < kTooNarrow;
+  if (2 * backs > dark) return one_surface || least < kRoomy;
+  return least < kTooNarrow || (least < kRoomy && 2 * lit_beyond > dark);
 }
 
 }  // namespace

@@ -56,5 +56,21 @@ TEST(BuriedPoints, InASlabAreThoseHoweverItIsWound) {
   }
 }
 
+TEST(BuriedPoints, InAChestThatStandsInTheLightAreThoseHoweverItIsWound) {
+  for (const bool inwards : {true, false}) {
+    test::PatchBuilder b;
+    b.surface("chest").box({1, 1, 0.1}, kX, kY, kZ, {1, 1, 1}, inwards);
+    b.surface("room").box({0, 0, 0}, kX * 4, kY * 4, kZ * 3, {1, 1, 1}, true);
+    PatchSet patches = b.build();
+    std::vector<bool> wanted(2 * patches.triangle_count(), false);
+    for (std::size_t t = 0; t < 2 * kBox; ++t) wanted[2 * t + (t < kBox && inwards ? kBack : kFront)] = true;
+    make_patches(patches, wanted);
+    const RayScene rays(patches);
+    const Lights none;
+    const std::vector<SensorPoint> points{{{1.5, 1.5, 0.6}, kZ}, {{3, 3, 0.6}, kZ}};
+    EXPECT_EQ(buried_points({patches, rays, none}, points), Numbers{0}) << inwards;
+  }
+}
+
 }  // namespace
 }  // namespace clerestory

@@ -12,118 +12,141 @@
 namespace clerestory {
 namespace {
 
-constexpr std::uint32_t kRays = 256;
-constexpr double kRightBehind = 0.1;  ///< what a panel may be mounted on [m]
-constexpr double kClose = 0.05;       ///< of a side that hardly lights anything [m]
+constexpr std::uint32_t kPoints = 64, kRays = 16;  ///< of a material, and from each side of a point
+constexpr double kRightBehind = 0.1;               ///< what a panel may be mounted on [m]
+constexpr double kClose = 0.05;                    ///< of a side that hardly lights anything [m]
+constexpr double kWorthAWord = 0.1;                ///< share of the points
 
-/// What rays from one side of a material's triangles meet, as shares of them.
+/// What rays from one side of a point meet.
 struct Sight {
-  double room = 0;   ///< fronts farther away than kRightBehind
-  double close = 0;  ///< another material within kClose of the panel's plane
-  double gap = 0;    ///< median distance to that, across the plane [m]
-  MaterialId what;   ///< most of it
+  std::uint32_t room = 0;        ///< fronts farther away than kRightBehind
+  std::uint32_t other_room = 0;  ///< those of other materials
+  std::uint32_t close = 0;       ///< other materials within kClose of the panel's plane
 };
 
-/// One side of a triangle, and the way back.
+/// What lies close to a panel: how far across its plane [m], and how often which material.
+struct Neighbours {
+  std::vector<double> gaps;
+  std::map<std::uint32_t, int> materials;
+};
+
 struct TriangleSide {
   TriangleId triangle;
   Side side;
-  TriangleSide other() const { return {triangle, side == kFront ? kBack : kFront}; }
 };
 
-/// Sides of a material that shine: fronts, and backs that are fronts of a joined face. Of a two-sided material the
+/// By material, the sides that shine: fronts, and backs that are fronts of a joined face. Of a two-sided material the
 /// fronts of what has it on both sides.
-std::vector<TriangleSide> lit_sides_of(const PatchSet& patches, MaterialId m) {
-  const bool one_sided = patches.materials[m].sides == 1;
-  std::vector<TriangleSide> all;
+std::vector<std::vector<TriangleSide>> lit_sides(const PatchSet& patches) {
+  std::vector<std::vector<TriangleSide>> lit(patches.materials.size());
+  const auto shines = [&](MaterialId m) { return patches.materials[m].emits() && patches.materials[m].receives(); };
   for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
-    const bool front = patches.side_material[t][kFront].value == m.value;
-    const bool back = patches.side_material[t][kBack].value == m.value;
+    const auto [front, back] = patches.side_material[t];
     const bool joined = !patches.joined.empty() && patches.joined[t];
-    if (one_sided ? front : front && back && !joined) all.push_back({TriangleId{t}, kFront});
-    if (one_sided && back && joined) all.push_back({TriangleId{t}, kBack});
+    const bool on_both_sides = front.value == back.value && !joined;
+    if (shines(front) && (patches.materials[front].sides == 1 || on_both_sides))
+      lit[front].push_back({TriangleId{t}, kFront});
+    if (joined && shines(back) && patches.materials[back].sides == 1) lit[back].push_back({TriangleId{t}, kBack});
   }
-  return all;
+  return lit;
 }
 
-/// Rays from those sides, or from behind them.
-Sight look(const Problem& problem, MaterialId m, const std::vector<TriangleSide>& sides,
-           const std::vector<double>& area_up_to, bool from_behind) {
+Sight look(const Problem& problem, MaterialId m, const Vec3& point, const Vec3& n, std::uint64_t key,
+           Neighbours& neighbours) {
   const PatchSet& patches = problem.patches;
+  const Vec3 p = point + n * problem.rays.lift();
+  const Frame frame(n);
   Sight sight;
-  std::vector<double> gaps;
-  std::map<std::uint32_t, int> seen;
-  const std::uint64_t key = stream_key(m, kPanelRays, from_behind);
   for (std::uint32_t k = 0; k < kRays; ++k) {
     const auto u = sobol4(k, key);
-    const double at = (k + 0.5) / kRays * area_up_to.back();
-    const auto place = std::upper_bound(area_up_to.begin(), area_up_to.end(), at) - area_up_to.begin();
-    const TriangleSide lit = sides[static_cast<std::size_t>(place)], from = from_behind ? lit.other() : lit;
-    const auto& corner = patches.corners[from.triangle];
-    const Vec3 a = patches.vertices[corner[0]], b = patches.vertices[corner[1]], c = patches.vertices[corner[2]];
-    const Vec3 n = normalized(cross(b - a, c - a)) * (from.side == kFront ? 1.0 : -1.0);
-    const Vec3 p = point_on_triangle({a, b, c}, u[2], u[3]) + n * problem.rays.lift();
-    const Ray ray{p, cosine_direction(Frame(n), u[0], u[1])};
+    const Ray ray{p, cosine_direction(frame, u[0], u[1])};
     const Hit hit = problem.rays.first_hit(patches, ray);
     if (hit.escaped()) continue;
-    const auto& met = patches.corners[hit.triangle];
-    const Vec3 q = patches.vertices[met[0]];
-    const Vec3 normal = cross(patches.vertices[met[1]] - q, patches.vertices[met[2]] - q);
+    const auto& corner = patches.corners[hit.triangle];
+    const Vec3 a = patches.vertices[corner[0]];
+    const Vec3 normal = cross(patches.vertices[corner[1]] - a, patches.vertices[corner[2]] - a);
     const Side side = dot(normal, hit.direction(ray)) < 0 ? kFront : kBack;
-    const double across = dot(hit.position(ray) - p, n);
     const MaterialId material = patches.side_material[hit.triangle][side];
-    sight.room += (side == kFront && double{hit.distance} > kRightBehind) / double{kRays};
-    if (!hit.reflected && across < kClose && material.value != m.value) {
-      sight.close += 1.0 / kRays;
-      gaps.push_back(across);
-      if (++seen[material.value] >= seen[sight.what.valid() ? sight.what.value : material.value]) sight.what = material;
-    }
-  }
-  if (!gaps.empty()) {
-    std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
-    sight.gap = gaps[gaps.size() / 2];
+    const bool is_other = material.value != m.value;
+    const bool is_room = side == kFront && double{hit.distance} > kRightBehind;
+    sight.room += is_room, sight.other_room += is_room && is_other;
+    const double across = dot(hit.position(ray) - p, n);
+    if (hit.reflected || !is_other || across > kClose) continue;
+    ++sight.close;
+    neighbours.gaps.push_back(across);
+    ++neighbours.materials[material.value];
   }
   return sight;
 }
 
-std::string millimetres(double metres) { return rounded(1000 * metres, 2) + " mm"; }
+/// "'ceiling', 5.0 mm away"
+std::string nearest(Neighbours& neighbours, const PatchSet& patches) {
+  const auto middle = neighbours.gaps.begin() + static_cast<std::ptrdiff_t>(neighbours.gaps.size() / 2);
+  std::nth_element(neighbours.gaps.begin(), middle, neighbours.gaps.end());
+  const auto most = std::ranges::max_element(neighbours.materials, {}, [](const auto& m) { return m.second; });
+  return "'" + patches.materials[most->first].name + "', " + rounded(1000 * *middle, 2) + " mm away";
+}
+
+std::string hint_about(const Problem& problem, MaterialId m, const std::vector<TriangleSide>& sides) {
+  const PatchSet& patches = problem.patches;
+  std::vector<double> area_up_to;
+  double area = 0;
+  for (const TriangleSide& s : sides) {
+    const auto& corner = patches.corners[s.triangle];
+    const Vec3 a = patches.vertices[corner[0]];
+    area += length(cross(patches.vertices[corner[1]] - a, patches.vertices[corner[2]] - a)) / 2;
+    area_up_to.push_back(area);
+  }
+  if (!(area > 0)) return "";
+  const bool one_sided = patches.materials[m].sides == 1;
+  Neighbours neighbours;
+  double wrong = 0;
+  for (std::uint32_t k = 0; k < kPoints; ++k) {
+    const std::uint64_t key = stream_key(m, kPanelRays, k);
+    const auto place = std::upper_bound(area_up_to.begin(), area_up_to.end(), (k + 0.5) / kPoints * area);
+    const TriangleSide& s = sides[static_cast<std::size_t>(place - area_up_to.begin())];
+    const auto& corner = patches.corners[s.triangle];
+    const Vec3 a = patches.vertices[corner[0]], b = patches.vertices[corner[1]], c = patches.vertices[corner[2]];
+    const Vec3 n = normalized(cross(b - a, c - a)) * (s.side == kFront ? 1.0 : -1.0);
+    const auto u = sobol4(k, stream_key(m, kPanelRays, kPoints));
+    const Vec3 p = point_on_triangle({a, b, c}, u[0], u[1]);
+    Neighbours at_front, at_back;
+    const Sight front = look(problem, m, p, n, key, at_front), back = look(problem, m, p, -n, key, at_back);
+    const auto add = [&](const Neighbours& near) {
+      wrong += 1.0 / kPoints;
+      neighbours.gaps.insert(neighbours.gaps.end(), near.gaps.begin(), near.gaps.end());
+      for (const auto& [material, count] : near.materials) neighbours.materials[material] += count;
+    };
+    const auto is_wasted = [](const Sight& near, const Sight& far) {
+      return near.close > 0.8 * kRays && far.close < 0.2 * kRays && far.other_room > 0.5 * kRays;
+    };
+    if (one_sided) {
+      if (front.room < 0.1 * kRays && back.other_room > 0.5 * kRays) add(at_front);
+    } else if (is_wasted(front, back)) {
+      add(at_front);
+    } else if (is_wasted(back, front)) {
+      add(at_back);
+    }
+  }
+  if (wrong < kWorthAWord) return "";
+  const std::string what = "material '" + patches.materials[m].name + "'" +
+                           (wrong < 1 - kWorthAWord ? ", in some " + rounded(100 * wrong, 1) + " % of its area," : "");
+  if (one_sided)
+    return what + " shines away from the room behind it" +
+           (neighbours.gaps.empty() ? "" : ": its lit side sees " + nearest(neighbours, patches)) +
+           ". Turn its faces round, or leave out \"sides\": 1.";
+  return what + " shines from both sides, and one of them sees " + nearest(neighbours, patches) +
+         ": half of its light is spent there. Write \"sides\": 1 if it shines from one side only, with its faces wound "
+         "counter-clockwise as seen from the room.";
+}
 
 }  // namespace
 
 std::vector<std::string> hints_about_panels(const Problem& problem) {
-  const PatchSet& patches = problem.patches;
   std::vector<std::string> hints;
-  for (std::size_t i = 0; i < patches.materials.size(); ++i) {
-    const Material& material = patches.materials[i];
-    if (!material.emits() || !material.receives()) continue;
-    const MaterialId m{i};
-    const std::vector<TriangleSide> sides = lit_sides_of(patches, m);
-    std::vector<double> area_up_to;
-    double area = 0;
-    for (const TriangleSide& side : sides) {
-      const auto& corner = patches.corners[side.triangle];
-      const Vec3 a = patches.vertices[corner[0]];
-      area += length(cross(patches.vertices[corner[1]] - a, patches.vertices[corner[2]] - a)) / 2;
-      area_up_to.push_back(area);
-    }
-    if (!(area > 0)) continue;
-    const Sight front = look(problem, m, sides, area_up_to, false), back = look(problem, m, sides, area_up_to, true);
-    if (material.sides == 1) {
-      if (front.room < 0.05 && back.room > 0.5)
-        hints.push_back("material '" + material.name + "' shines away from the room behind it" +
-                        (front.close > 0.5 ? ": its lit side sees '" + patches.materials[front.what].name + "', " +
-                                                 millimetres(front.gap) + " away"
-                                           : "") +
-                        ". Turn its faces round, or leave out \"sides\": 1.");
-      continue;
-    }
-    for (const auto& [near, far] : {std::pair{&front, &back}, {&back, &front}})
-      if (near->close > 0.8 && far->close < 0.2 && far->room > 0.5)
-        hints.push_back("material '" + material.name + "' shines from both sides, and one of them lies " +
-                        millimetres(near->gap) + " from '" + patches.materials[near->what].name +
-                        "': half of its light is spent there. Write \"sides\": 1 if it shines from one side only, with "
-                        "its faces wound counter-clockwise as seen from the room.");
-  }
+  const std::vector<std::vector<TriangleSide>> lit = lit_sides(problem.patches);
+  for (std::size_t m = 0; m < lit.size(); ++m)
+    if (std::string hint = hint_about(problem, MaterialId{m}, lit[m]); !hint.empty()) hints.push_back(std::move(hint));
   return hints;
 }
 

@@ -13,7 +13,7 @@ namespace clerestory {
 ///   side faces the room;
 /// - of two sides, one of which lies within a few centimetres of something else: half of its light is spent there.
 ///
-/// Needs triangles with their materials and the rays; sides need not take part. Cost: 512 rays a glowing material.
+/// Needs triangles with their materials and the rays; sides need not take part. Cost: 2048 rays a glowing material.
 std::vector<std::string> hints_about_panels(const Problem& problem);
 
 }  // namespace clerestory

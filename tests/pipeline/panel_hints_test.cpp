@@ -75,9 +75,18 @@ TEST_F(Panels, OfTwoSidesUnderTheCeilingSpendHalfOfTheirLightThere) {
   const std::vector<std::string> wrong = hints(2);
   ASSERT_EQ(wrong.size(), 1u);
   EXPECT_TRUE(
-      wrong[0].starts_with("material 'panel' shines from both sides, and one of them lies 5.0 mm from 'wall': "
+      wrong[0].starts_with("material 'panel' shines from both sides, and one of them sees 'wall', 5.0 mm away: "
                            "half of its light is spent there."))
       << wrong[0];
+}
+
+TEST_F(Panels, OfWhichSomeAreWrongAreNamedWithTheirShare) {
+  panel(2.99, false);
+  for (const double y : {0.2, 1.0, 2.9})
+    face({Vec3{0.3, y, 2.99}, {0.3, y + 0.6, 2.99}, {0.9, y + 0.6, 2.99}, {0.9, y, 2.99}}, 1);
+  const std::vector<std::string> wrong = hints(1);
+  ASSERT_EQ(wrong.size(), 1u);
+  EXPECT_TRUE(wrong[0].starts_with("material 'panel', in some 25 % of its area, shines away")) << wrong[0];
 }
 
 TEST_F(Panels, ThatHangFreeAreRightHoweverTheyShine) {

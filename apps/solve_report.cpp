@@ -169,7 +169,12 @@ void say_summary(const RunReport& r, const Solved& s, Console& console) {
   console.say("  energy  emitted " + rounded(r.energy.emitted, 4) + " W, absorbed " + rounded(r.energy.absorbed, 4) +
               " W, escaped " + rounded(r.energy.escaped, 4) + " W, imbalance " + percent(r.energy.imbalance()));
   console.say("  error   " + (s.error ? error_line(*s.error) : std::string("not measured")));
-  if (s.error_sensors) console.say("  sensors " + error_line(*s.error_sensors));
+  const std::string but =
+      s.buried_sensors > 0 ? "; not of " + counted(s.buried_sensors, "sensor") + " inside a solid" : "";
+  if (s.error_sensors)
+    console.say("  sensors " + error_line(*s.error_sensors) + but);
+  else if (std::ranges::all_of(s.sensor_E.value, [](double value) { return value == 0; }) && !r.sensors.empty())
+    console.say("  sensors no light arrives at them, so there is no error to tell");
   if (!r.sensors.empty())
     for (const std::string& line : sensor_table(r.sensors)) console.say("  " + line);
   console.say("  time    " + duration(t.total) + " (read " + duration(t.read) + ", mesh " + duration(t.mesh) +

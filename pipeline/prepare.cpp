@@ -6,6 +6,7 @@
 #include "meshing/build_patches.h"
 #include "meshing/make_lightmap.h"
 #include "pipeline/lap.h"
+#include "pipeline/panel_hints.h"
 #include "pipeline/scene_checks.h"
 #include "pipeline/wording.h"
 #include "solver/illumination/place_lights.h"
@@ -55,8 +56,11 @@ std::size_t memory_after_reading(std::size_t limit, const MeshReport& repairs) {
 std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, const Scene& scene,
                                            StageSeconds& seconds) {
   if (!prepared) return {};
-  if (prepared->patches.patch_count() == 0)
-    throw InputError(scene.file + ": no light reaches any surface; move or aim the lights at the model.");
+  if (prepared->patches.patch_count() == 0) {
+    std::string why = scene.file + ": no light reaches any surface; move or aim the lights at the model.";
+    for (const std::string& hint : hints_about_panels(prepared->problem())) why += " The " + hint;
+    throw InputError(why);
+  }
   Lap lap;
   VertexLightmap map = make_lightmap(prepared->patches);
   lap.add_to(seconds.build);

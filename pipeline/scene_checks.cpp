@@ -7,7 +7,7 @@
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
 #include "pipeline/wording.h"
-#include "solver/gather/gather.h"
+#include "solver/evaluate/buried_points.h"
 #include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/near_planes.h"
@@ -117,26 +117,30 @@ std::string why_unused(const std::string& pattern, const Scene& scene) {
                                           : "matches no material of the model.";
 }
 
-/// Of very many only as many as can be looked at in a second or two, evenly spread.
-void warn_about_sensors(const Problem& problem, const std::string& file, const SensorPlanes& sensors,
-                        Observer& observer) {
+/// Of very many only as many as can be looked at in a second or two, evenly spread. Returns the planes that are buried.
+std::vector<std::size_t> warn_about_sensors(const Problem& problem, const std::string& file,
+                                            const SensorPlanes& sensors, Observer& observer) {
   constexpr std::size_t kMostPlanes = 100'000;
+  constexpr std::string_view kInside = ") inside a solid; what arrives there means little.";
   const std::size_t step = 1 + sensors.planes.size() / kMostPlanes;
   if (step == 1) {
-    const auto buried = sensors_of(sensors, buried_points(problem, sensors.planes));
+    std::vector<std::size_t> planes = buried_points(problem, sensors.planes);
+    const auto buried = sensors_of(sensors, planes);
     if (!buried.empty())
-      observer.warn(file + ": " + counted(buried.size(), "sensor") + " (" + row_list(buried) +
-                    ") inside a solid or on a surface; what arrives there means little.");
-    return;
+      observer.warn(text(file, ": ", counted(buried.size(), "sensor"), " (", row_list(buried), kInside));
+    return planes;
   }
   std::vector<SensorPoint> some;
   for (std::size_t s = 0; s < sensors.sensor_count(); s += step) some.push_back(sensors.planes[sensors.begin[s]]);
-  std::vector<std::size_t> buried = buried_points(problem, some);
-  for (std::size_t& row : buried) row *= step;
-  if (!buried.empty())
-    observer.warn(file + ": of " + grouped(some.size()) + " sensors looked at, one in " + grouped(step) + ", " +
-                  grouped(buried.size()) + " (" + row_list(buried) +
-                  ") inside a solid or on a surface; what arrives there means little.");
+  std::vector<std::size_t> rows = buried_points(problem, some), planes;
+  for (std::size_t& row : rows) {
+    row *= step;
+    planes.push_back(sensors.begin[row]);
+  }
+  if (!rows.empty())
+    observer.warn(text(file, ": of ", grouped(some.size()), " sensors looked at, one in ", grouped(step), ", ",
+                       grouped(rows.size()), " (", row_list(rows), kInside));
+  return planes;
 }
 
 }  // namespace
@@ -169,9 +173,10 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
     observer.warn(scene.file + ": materials '" + quotable(name) + "' " + why_unused(name, scene));
 }
 
-void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Observer& observer) {
+std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,
+                                           Observer& observer) {
   warn_about_luminaires(problem, observer);
-  warn_about_sensors(problem, scene.file, sensors, observer);
+  return warn_about_sensors(problem, scene.file, sensors, observer);
 }
 
 }  // namespace clerestory

@@ -19,7 +19,10 @@ void require_light(const Scene& scene);
 /// What the reader assumed or left out, and material rules that match nothing.
 void warn_about_scene(const Scene& scene, Observer& observer);
 
-/// Luminaires outside every room and sensors inside walls.
-void warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors, Observer& observer);
+/// Luminaires outside every room and sensors inside solids.
+///
+/// returns  numbers of the sensors' planes that lie inside solids, ascending.
+std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,
+                                           Observer& observer);
 
 }  // namespace clerestory

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "pipeline/lap.h"
+#include "pipeline/panel_hints.h"
 #include "pipeline/prepare.h"
 #include "pipeline/repeat_to_target.h"
 #include "pipeline/require_valid.h"
@@ -23,6 +26,26 @@ std::optional<MeasuredError> if_measured(const MeasuredError& error) {
   return error.samples > 0 ? std::optional(error) : std::nullopt;
 }
 
+struct PlanesAndE {
+  std::vector<SensorPoint> planes;
+  Field E;
+};
+
+/// All but those with the given numbers, ascending.
+PlanesAndE without(const std::vector<std::size_t>& numbers, const std::vector<SensorPoint>& planes, const Field& E) {
+  PlanesAndE rest{{}, Field(planes.size() - numbers.size(), E.channels)};
+  auto next = numbers.begin();
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (next != numbers.end() && *next == i) {
+      ++next;
+      continue;
+    }
+    rest.E.set(rest.planes.size(), E[i]);
+    rest.planes.push_back(planes[i]);
+  }
+  return rest;
+}
+
 }  // namespace
 
 Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer) {
@@ -31,18 +54,22 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
   require_light(scene);
   const SensorPlanes sensors = planes_of(scene.sensors);
 
-  bool first = true;
+  std::optional<std::vector<std::size_t>> buried;  // once the first patches are there
+  std::vector<std::string> hints;
   Solved best = repeat_to_target(
       asked, observer, [&](Settings& settings, const Monitor& monitor, StageSeconds& seconds) -> std::optional<Solved> {
         // Scene -> patches, rays, lights, sides that light can reach, points to show it on.
         Solved out;
         Monitor preparing = monitor;  // late or not, there is nothing to show before the first round
-        if (!first) preparing.interrupted = [&] { return monitor.should_stop(); };
+        if (buried) preparing.interrupted = [&] { return monitor.should_stop(); };
         std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, preparing, seconds);
         if (!prepared) return {};
         auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
         const Problem problem = prepared->scene.problem();
-        if (std::exchange(first, false)) warn_about_places(problem, scene, sensors, observer);
+        if (!buried) {
+          buried = warn_about_places(problem, scene, sensors, observer);
+          hints = hints_about_panels(problem);
+        }
 
         // -> radiosity of elements, irradiance at vertices.
         Lap lap;
@@ -65,9 +92,12 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         Monitor measuring = monitor;
         measuring.deadline = std::max(measuring.deadline, std::chrono::steady_clock::now() + kTimeToMeasure);
         out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, measuring));
-        if (at_planes.complete())
-          out.error_sensors = if_measured(measure_sensor_error(problem, sensors.planes, at_planes.E, spend,
-                                                               solution.rays, options.seed, measuring));
+        if (at_planes.complete()) {
+          const auto [planes, E] = without(*buried, sensors.planes, at_planes.E);
+          out.error_sensors =
+              if_measured(measure_sensor_error(problem, planes, E, spend, solution.rays, options.seed, measuring));
+        }
+        out.buried_sensors = sensors_of(sensors, *buried).size();
         if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
         lap.add_to(seconds.measure);
 
@@ -80,6 +110,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         return out;
       });
   warn_about_result(best, observer);
+  for (const std::string& hint : hints) observer.warn(scene.file + ": " + hint);  // last, where it is seen
   return best;
 }
 

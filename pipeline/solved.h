@@ -22,6 +22,7 @@ struct Solved {
   Solution solution;        ///< of the elements
   Field sensor_E;  ///< S x channels, by sensor of all sets, one set after the other [W/m2]; empty: there was no time
   std::optional<MeasuredError> error, error_sensors;  ///< empty when not measured
+  std::size_t buried_sensors = 0;                     ///< inside solids: their error is not part of error_sensors
   MeshReport repairs;
   LitSides lit_sides;
   std::size_t openings = 0;  ///< through which the sky looks in

@@ -7,6 +7,7 @@
 #include "apps/finish_report.h"
 #include "apps/mesh_summary.h"
 #include "apps/run.h"
+#include "pipeline/panel_hints.h"
 #include "pipeline/prepare.h"
 #include "pipeline/scene_checks.h"
 #include "pipeline/wording.h"
@@ -114,6 +115,8 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   say_mesh(repairs, console);
   say_materials(scene, console);
   say_lights(scene, console);
+
+  for (const std::string& hint : hints_about_panels(prepared->problem())) console.warn(scene.file + ": " + hint);
 
   report.settings = as_figures(settings, patches.channels, arguments.read);
   report.repairs = repairs;

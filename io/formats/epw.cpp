@@ -215,7 +215,7 @@ Weather read_epw(const std::filesystem::path& file) {
   for (std::string_view rest = text_bytes(bytes, weather.file); !rest.empty();) {
     const std::string_view row = trimmed(next_line(rest));
     ++number;
-    if (number == 1 && row.find(';') < row.find(',')) separator = ';';
+    if (const std::size_t first = row.find_first_of(",;\t"); number == 1 && first != row.npos) separator = row[first];
     if (number > kHeaderLines && row.empty()) continue;
     const bool used = number == 1 || number >= kHeaderLines;
     const Line line{text(weather.file, ":", number, ": "), used ? cells_of(row, separator) : Cells{}};

@@ -35,9 +35,9 @@ struct Weather {
 };
 
 /// Reads what a whole file must have, and of each hour what can be read: one bad hour is no reason against another.
-/// Commas separate, or semicolons with decimal commas, as LOCATION shows. Cells may be quoted. Small negative
-/// radiation, the night's offset of a pyranometer, counts as 0; blanks, fillers of nines and other negatives as
-/// missing.
+/// Commas separate, or what stands behind LOCATION: semicolons or tabs, with decimal commas perhaps. Cells may be
+/// quoted. Small negative radiation, the night's offset of a pyranometer, counts as 0; blanks, fillers of nines and
+/// other negatives as missing.
 ///
 /// throws  InputError naming file and line: no EPW, no place, more than one record an hour, fewer hours than the header
 ///         says.

@@ -16,7 +16,7 @@ namespace clerestory {
 struct MeasuredError {
   double rms_relative = 0;
   double p95_relative = 0;
-  std::size_t samples = 0;  ///< 0: stopped before anything was measured
+  std::size_t samples = 0;  ///< 0: stopped before anything was measured, or no light arrives at any of the points
   double confidence = 0;    ///< half-width of the 95 % interval of rms_relative
 };
 

@@ -4,9 +4,6 @@
 
 #include "solver/gather/gather_point.h"
 #include "solver/model/parallel.h"
-#include "solver/model/random_stream.h"
-#include "solver/model/streams.h"
-#include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 
@@ -87,24 +84,6 @@ void set_points(const PointIrradiance& at_samples, VertexLightmap& lightmap) {
     lightmap.E.set(p, mean);
     if (has_error) lightmap.std_error.set(p, {std::sqrt(variance[0]), std::sqrt(variance[1]), std::sqrt(variance[2])});
   }
-}
-
-std::vector<std::size_t> buried_points(const Problem& problem, std::span<const SensorPoint> points) {
-  std::vector<std::size_t> buried;
-  constexpr std::uint32_t kRays = 32;
-  const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::uint32_t dark = 0;
-    const ReceivingPoint at = point_of(i);
-    const Frame frame(at.n);
-    for (std::uint32_t k = 0; k < kRays && 2 * (dark + kRays - k) > kRays && 2 * dark <= kRays; ++k) {
-      const auto u = sobol4(k, stream_key(0, kBuriedPoints, i));
-      const Hit hit = problem.rays.first_hit(problem.patches, {at.p, cosine_direction(frame, u[0], u[1])});
-      dark += !hit.escaped() && !hit.patch.valid();
-    }
-    if (2 * dark > kRays) buried.push_back(i);
-  }
-  return buried;
 }
 
 }  // namespace clerestory

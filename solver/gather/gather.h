@@ -37,7 +37,4 @@ LightRows gather_rows_at(const Illumination& light, std::size_t count, const Poi
 /// lightmap.E held: fill it with average_to_points() before.
 void set_points(const PointIrradiance& at_samples, VertexLightmap& lightmap);
 
-/// Numbers of the points that lie inside a solid: most of what they see are sides that no light reaches.
-std::vector<std::size_t> buried_points(const Problem& problem, std::span<const SensorPoint> points);
-
 }  // namespace clerestory

@@ -37,6 +37,7 @@ enum Stream : std::uint64_t {
   kPathsOfSensor = 0x61,
   kPathsOfSample = 0x62,
   kBuriedPoints = 0x63,
+  kPanelRays = 0x64,
   // Measured error, by point.
   kErrorPoints = 0x71,
   kErrorPaths = 0x72,

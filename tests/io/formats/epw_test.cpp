@@ -88,12 +88,15 @@ TEST_F(Epw, CommasBetweenQuotationMarksAndWithoutThemMoveNothing) {
 }
 
 TEST_F(Epw, ASpreadsheetsSemicolonsAndDecimalCommasAreRead) {
-  std::string content = joined(weather_lines());
-  for (char& c : content) c = c == ',' ? ';' : c == '.' ? ',' : c;
-  const Weather weather = read_epw(folder_.write("city.epw", content));
-  EXPECT_EQ(weather.place.latitude_deg, 39.742476);
-  EXPECT_EQ(weather.at(10, 17, 13).direct_normal, 600);
-  EXPECT_EQ(weather.at(10, 17, 13).dew_point_c, 2);
+  const std::string content = joined(weather_lines());
+  for (const char separator : {';', '\t'}) {
+    std::string changed = content;
+    for (char& c : changed) c = c == ',' ? separator : c == '.' ? ',' : c;
+    const Weather weather = read_epw(folder_.write("city.epw", changed));
+    EXPECT_EQ(weather.place.latitude_deg, 39.742476);
+    EXPECT_EQ(weather.at(10, 17, 13).direct_normal, 600);
+    EXPECT_EQ(weather.at(10, 17, 13).dew_point_c, 2);
+  }
 }
 
 TEST_F(Epw, DatesOfPeriodsOnlyTellWhetherTheFileIsCut) {

@@ -250,6 +250,12 @@ TEST(Photometry, AMetersOffsetIsZeroAndTextBehindTheDataIsLeftOutBothWithAWarnin
   for (const char* wrong : {"-20\n", "1\n2\n"}) EXPECT_THROW(parse_ldt(ldt + wrong, "lamp.ldt", said), InputError);
 }
 
+TEST(Photometry, Utf16IsNamedWithTheWayOut) {
+  std::string utf16 = "\xff\xfe";
+  for (const char c : ies(kEvenly)) utf16 += c, utf16 += '\0';
+  EXPECT_EQ(refusal(utf16), "lamp.ies: is UTF-16 text; save it as UTF-8");
+}
+
 TEST(Photometry, RefusalsNameLineValueAndWhatIsAllowed) {
   EXPECT_EQ(refusal(ies("1 1000 1 3 1 4 2 0 0 0\n")),
             "lamp.ies:3: photometric type = 4; 1 (C), 2 (B) and 3 (A) are known");

@@ -90,15 +90,5 @@ TEST(MeasuredError, IsNothingForAnExactFieldAndFindsAFieldThatIsFivePerCentTooBr
   }
 }
 
-TEST(BuriedPoints, AreThoseThatOnlySeeSidesWithoutLight) {
-  // Inside a block of the room only backs are seen, which take no part.
-  const PatchSet patches = test::room_of_2160_patches().build();
-  const RayScene rays(patches);
-  const Lights none;
-  const Problem problem{patches, rays, none};
-  const std::vector<SensorPoint> points{{{0.2, 0.2, 0.8}, {0, 0, 1}}, {{1.5, 1.8, 1.0}, {0, 0, 1}}};
-  EXPECT_EQ(buried_points(problem, points), std::vector<std::size_t>{1});
-}
-
 }  // namespace
 }  // namespace clerestory

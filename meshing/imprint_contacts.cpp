@@ -105,8 +105,8 @@ std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector
   constexpr std::uint32_t kSeveral = 0xffffffff;
   const auto one_group = tree.by_node([&](std::uint32_t f) { return group_of[f]; },
                                       [](std::uint32_t g, std::uint32_t h) { return g == h ? g : kSeveral; });
-  const CrowdLimit pairs{"pairs of faces of different planes touch by their boxes", 50'000'000 + 200 * count};
-  const CrowdLimit contacts{"pairs of faces cross or touch", 1'000'000 + 10 * count};
+  const CrowdLimit pairs{"pairs of faces of different planes touch by their boxes", 20'000'000 + 500 * count};
+  const CrowdLimit contacts{"pairs of faces cross or touch", 100'000 + 20 * count};
   std::atomic<std::size_t> all_met = 0, all_found = 0;
   constexpr std::size_t kGrain = 256;
   std::vector<std::vector<Contact>> found((count + kGrain - 1) / kGrain);
@@ -347,9 +347,23 @@ struct Crossing {
   double tolerance;
 };
 
-/// Where lines of one group cross away from their ends; no more than `most`, and one.
+/// How much crossings() may do for all planes; what is beyond is left undone.
+struct CrossingCount {
+  explicit CrossingCount(std::size_t lines)
+      : met_limit{"pairs of edges of one plane touch by their boxes", 20'000'000 + 200 * lines},
+        found_limit{"places where edges of one plane cross", 50'000 + lines} {}
+  bool is_over() const { return met > met_limit.most || found > found_limit.most; }
+  void check(const FaceComplex& complex) const {
+    found_limit.check(found, complex);
+    met_limit.check(met, complex);
+  }
+  CrowdLimit met_limit, found_limit;
+  std::atomic<std::size_t> met = 0, found = 0;
+};
+
+/// Where lines of one group cross away from their ends.
 std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, std::span<const Line> lines,
-                                std::size_t most) {
+                                CrossingCount& count) {
   std::vector<Crossing> found;
   std::vector<std::array<Point2, 2>> flat;
   std::vector<Box> boxes;
@@ -361,7 +375,7 @@ std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, 
   }
   const auto test = [&](std::size_t i, std::size_t j) {
     const Line &li = lines[i], &lj = lines[j];
-    if (li.a == lj.a || li.a == lj.b || li.b == lj.a || li.b == lj.b || found.size() > most) return;
+    if (li.a == lj.a || li.a == lj.b || li.b == lj.a || li.b == lj.b) return;
     const auto& [p, q] = flat[i];
     const auto& [r, s] = flat[j];
     const double dx = q.x - p.x, dy = q.y - p.y, ex = s.x - r.x, ey = s.y - r.y;
@@ -384,15 +398,21 @@ std::vector<Crossing> crossings(const FaceComplex& complex, const Plane& plane, 
     return found;
   }
   const BoxTree tree(lines.size(), [&](std::uint32_t i) -> const Box& { return boxes[i]; });
-  for (std::size_t i = 0; i < lines.size() && found.size() <= most; ++i)
+  for (std::size_t i = 0; i < lines.size() && !count.is_over(); ++i) {
+    const std::size_t found_before = found.size();
+    std::size_t met = 0;
     tree.visit_if(
         [&](const Box& b) {
           return b.touches(boxes[i]) &&
                  b.touches_segment({flat[i][0].x, flat[i][0].y, 0}, {flat[i][1].x, flat[i][1].y, 0});
         },
         [&](std::uint32_t j) {
+          ++met;
           if (j > i) test(i, j);
         });
+    count.met += met;
+    count.found += found.size() - found_before;
+  }
   return found;
 }
 
@@ -402,17 +422,14 @@ std::vector<std::vector<Crossing>> crossings_by_group(const FaceComplex& complex
   for (std::size_t k = lines.size(); k-- > 0;) begin_of[lines[k].group] = k;
   for (std::size_t g = groups.size(); g-- > 0;) begin_of[g] = std::min(begin_of[g], begin_of[g + 1]);
   std::vector<std::vector<Crossing>> found(groups.size());
-  const CrowdLimit limit{"places where lines of one plane cross", 300'000 + 5 * lines.size()};
-  std::atomic<std::size_t> count = 0;
+  CrossingCount count(lines.size());
   parallel_for(groups.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin; g < end && count <= limit.most; ++g)
-      if (begin_of[g + 1] - begin_of[g] > 3) {
+    for (std::size_t g = begin; g < end && !count.is_over(); ++g)
+      if (begin_of[g + 1] - begin_of[g] > 3)
         found[g] = crossings(complex, groups[g].plane,
-                             std::span(lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]), limit.most);
-        count += found[g].size();
-      }
+                             std::span(lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]), count);
   });
-  limit.check(count, complex);
+  count.check(complex);
   return found;
 }
 

@@ -10,8 +10,11 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/hilbert_sort.h>
+#include <CGAL/property_map.h>
 
 #include "meshing/surface_complex.h"
 
@@ -34,6 +37,14 @@ using CdtFaceBase = CGAL::Triangulation_face_base_with_info_2<CdtFace, CdtKernel
 using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
     CdtKernel, CGAL::Triangulation_data_structure_2<CdtVertexBase, CdtFaceBase>, CGAL::Exact_predicates_tag>;
 
+/// Points along a Hilbert curve: each is then found near the one before, wherever they lie.
+inline void sort_by_place(std::span<std::pair<CdtKernel::Point_2, CdtVertex>> points) {
+  using Traits =
+      CGAL::Spatial_sort_traits_adapter_2<CdtKernel,
+                                          CGAL::First_of_pair_property_map<std::pair<CdtKernel::Point_2, CdtVertex>>>;
+  CGAL::hilbert_sort(points.begin(), points.end(), Traits());
+}
+
 /// Draws points and lines of a plane into a triangulation, ids in ascending order so that the result is always the
 /// same.
 inline std::unordered_map<std::uint32_t, Cdt::Vertex_handle> draw(Cdt& cdt, const Plane& plane,
@@ -51,6 +62,8 @@ inline std::unordered_map<std::uint32_t, Cdt::Vertex_handle> draw(Cdt& cdt, cons
   }
   std::unordered_map<std::uint32_t, Cdt::Vertex_handle> handle;
   Cdt::Face_handle near;
+  constexpr std::size_t kMany = 20'000;  // rows of points, one after the other, cost the square of their length
+  if (drawn.size() > kMany) sort_by_place(drawn);
   for (const auto& [point, info] : drawn) {
     const Cdt::Vertex_handle v = cdt.insert(point, near);
     if (v->info().id == kNoVertex) v->info() = info;

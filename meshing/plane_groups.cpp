@@ -14,6 +14,7 @@ namespace {
 struct FaceShape {
   Vec3 centre, normal;
   double area, longest, height;  ///< height: of the triangle over its longest edge
+  double slack;                  ///< most that the normal may be off its plane's [sine]
 };
 
 FaceShape shape_of(const FaceComplex& complex, const Face& face) {
@@ -21,14 +22,10 @@ FaceShape shape_of(const FaceComplex& complex, const Face& face) {
              c = complex.vertices[face.corner[2]];
   const Vec3 n = cross(b - a, c - a);
   const double longest = std::max({length(b - a), length(c - b), length(a - c)});
-  return {(a + b + c) / 3, normalized(n), length(n) / 2, longest, length(n) / longest};
-}
-
-/// Most that a face's normal may be off its plane's [sine]: corners' rounding turns that of a low triangle by about
-/// tolerance / height.
-double normal_slack(const FaceComplex& complex, const FaceShape& shape) {
-  const double tolerance = std::min(complex.allowed.contact, complex.allowed.local_share * shape.longest);
-  return 0.01 + 2 * tolerance / shape.height;
+  const double height = length(n) / longest;
+  // Corners' rounding turns the normal of a low triangle by about tolerance / height.
+  const double tolerance = std::min(complex.allowed.contact, complex.allowed.local_share * longest);
+  return {(a + b + c) / 3, normalized(n), length(n) / 2, longest, height, 0.01 + 2 * tolerance / height};
 }
 
 bool lies_in(const Plane& plane, const FaceComplex& complex, const Face& face, const FaceShape& shape, double drift) {
@@ -37,7 +34,7 @@ bool lies_in(const Plane& plane, const FaceComplex& complex, const Face& face, c
     const Vec3& p = complex.vertices[v];
     if (std::abs(plane.distance(p)) > tolerance + drift * length(p - plane.origin)) return false;
   }
-  return length(cross(plane.n, shape.normal)) <= normal_slack(complex, shape);
+  return length(cross(plane.n, shape.normal)) <= shape.slack;
 }
 
 /// The plane nearest to the corners of some faces, by least squares weighted with their area: z = c0 + c1 x + c2 y in
@@ -116,7 +113,7 @@ class Neighbours {
                      if (!taken[g] && may_share_plane(f, g)) asked_.push_back(g);
                    },
                    [&](std::size_t node) { return free_[node] > 0; });
-    CrowdLimit{"pairs of faces touch by their boxes", 50'000'000 + 100 * shapes_.size()}.check(met_, complex_);
+    CrowdLimit{"pairs of faces touch by their boxes", 20'000'000 + 500 * shapes_.size()}.check(met_, complex_);
     std::sort(asked_.begin(), asked_.end());
     return asked_;
   }
@@ -144,8 +141,7 @@ class Neighbours {
     }
   };
   bool may_share_plane(std::uint32_t f, std::uint32_t g) const {
-    return g != f && length(cross(shapes_[f].normal, shapes_[g].normal)) <=
-                         normal_slack(complex_, shapes_[f]) + normal_slack(complex_, shapes_[g]);
+    return g != f && length(cross(shapes_[f].normal, shapes_[g].normal)) <= shapes_[f].slack + shapes_[g].slack;
   }
 
   const FaceComplex& complex_;

@@ -44,12 +44,21 @@ PolygonTriangles triangulate_polygon(std::span<const Vec3> polygon, std::size_t 
   const Frame frame(normal);
   const Plane plane{polygon[0], frame.t, frame.b, frame.n};
   Cdt cdt;
-  std::vector<Cdt::Vertex_handle> corner(n);
+  std::vector<std::pair<CdtKernel::Point_2, CdtVertex>> points(n);
   for (std::uint32_t k = 0; k < n; ++k) {
     const Point2 p = plane.flatten(polygon[k]);
-    corner[k] = cdt.insert({p.x, p.y});
-    if (corner[k]->info().id == kNoVertex) corner[k]->info().id = k;
+    points[k] = {{p.x, p.y}, {k}};
   }
+  constexpr std::uint32_t kMany = 4000;  // fewer are found soon enough from anywhere
+  if (n > kMany) sort_by_place(points);
+  std::vector<Cdt::Vertex_handle> corner(n);
+  Cdt::Face_handle near;
+  for (const auto& [point, k] : points) {
+    corner[k.id] = cdt.insert(point, near);
+    if (n > kMany) near = corner[k.id]->face();
+  }
+  for (std::uint32_t k = 0; k < n; ++k)
+    if (corner[k]->info().id == kNoVertex) corner[k]->info().id = k;
   // A doubled edge (to a hole and back) does not part inside from outside.
   std::map<std::array<std::uint32_t, 2>, int> times;
   for (std::uint32_t k = 0; k < n; ++k) {

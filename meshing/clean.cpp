@@ -6,6 +6,7 @@
 #include <string>
 
 #include "meshing/point_index.h"
+#include "meshing/stacked_faces.h"
 #include "meshing/triangulate_polygon.h"
 #include "solver/model/box_tree.h"
 #include "solver/model/error.h"
@@ -41,6 +42,31 @@ bool has_area(const FaceComplex& complex, const std::array<std::uint32_t, 3>& c)
   return height > std::min(complex.allowed.contact, 0.1 * complex.allowed.local_share * longest);
 }
 
+/// What is between coordinates by chance, in the working frame: models whose coordinates are all of single precision
+/// are taken to be rounded to it; all are rounded to the grid.
+double rounding_of(const PolygonSoup& soup, const std::vector<bool>& used, double size) {
+  constexpr double kGrid = 8 * 0x1p-32;
+  double largest = 0;
+  bool is_single = true;
+  for (std::size_t v = 0; v < soup.vertices.size(); ++v) {
+    if (!used[v]) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = soup.vertices[v][axis];
+      largest = std::max(largest, std::abs(x));
+      is_single = is_single && static_cast<double>(static_cast<float>(x)) == x;
+    }
+  }
+  return std::max(kGrid, (is_single ? 0x1p-23 : 0x1p-51) * largest / size);
+}
+
+/// Whether a face lies where another with the same corners lies, before welding.
+bool is_at_the_same_place(const FaceComplex& complex, const Face& a, const Face& b) {
+  const Vec3 n = normalized(cross(complex.vertices[a.corner[1]] - complex.vertices[a.corner[0]],
+                                  complex.vertices[a.corner[2]] - complex.vertices[a.corner[0]]));
+  const Plane plane{complex.vertices[a.corner[0]], {}, {}, n};
+  return gap_between(complex, height_as_read(complex, plane, a), height_as_read(complex, plane, b)) == 0;
+}
+
 /// Drops triangles that repeat one of the same material, wound the same way; counts those wound the other way.
 void drop_duplicates(FaceComplex& complex, MeshReport& report) {
   struct Key {
@@ -63,7 +89,8 @@ void drop_duplicates(FaceComplex& complex, MeshReport& report) {
     std::size_t end = k, turned = 0, dropped = 0;
     for (; end < keys.size() && keys[end].sorted == keys[k].sorted; ++end) {
       const bool repeats =
-          end > k && keys[end].odd == keys[end - 1].odd && keys[end].material == keys[end - 1].material;
+          end > k && keys[end].odd == keys[end - 1].odd && keys[end].material == keys[end - 1].material &&
+          is_at_the_same_place(complex, complex.faces[keys[end].face], complex.faces[keys[end - 1].face]);
       if (repeats) {
         drop[keys[end].face] = true;
         ++dropped;
@@ -91,7 +118,7 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
     return std::span(soup.corner).subspan(soup.face_begin[f], soup.face_begin[f + 1] - soup.face_begin[f]);
   };
 
-  std::vector<bool> usable(face_count);
+  std::vector<bool> usable(face_count), used_vertex(soup.vertices.size());
   Box extent;
   for (std::size_t f = 0; f < face_count; ++f) {
     const auto corners = corners_of(f);
@@ -100,7 +127,7 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
     if (!usable[f])
       ++report.non_finite_faces;
     else
-      for (const std::uint32_t v : corners) extent.add(soup.vertices[v]);
+      for (const std::uint32_t v : corners) extent.add(soup.vertices[v]), used_vertex[v] = true;
   }
 
   FaceComplex complex;
@@ -114,6 +141,7 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
   }
   const bool has_size = complex.size > 0 && std::isfinite(complex.size);
   if (!has_size) complex.size = 1;
+  complex.rounding = rounding_of(soup, used_vertex, complex.size);
 
   // Vertices that hang on small faces weld with a small tolerance.
   std::vector<Vec3> local(soup.vertices.size());
@@ -139,10 +167,11 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
   const std::size_t most_crossings = 50'000 + soup.corner.size() / 4;
   std::size_t used = 0, crossings = 0;
   std::vector<Vec3> polygon;
-  std::vector<std::uint32_t> ids;
+  std::vector<std::uint32_t> ids, read_at;
   for (std::size_t f = 0; f < face_count && has_size; ++f) {
     if (!usable[f]) continue;
     ids.clear();
+    read_at.clear();
     polygon.clear();
     for (const std::uint32_t v : corners_of(f)) {
       if (welded[v] == PointIndex::kNone) {
@@ -151,8 +180,9 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
       }
       if (!ids.empty() && ids.back() == welded[v]) continue;
       ids.push_back(welded[v]);
+      read_at.push_back(v);
     }
-    while (ids.size() > 1 && ids.back() == ids.front()) ids.pop_back();
+    while (ids.size() > 1 && ids.back() == ids.front()) ids.pop_back(), read_at.pop_back();
     for (const std::uint32_t v : ids) polygon.push_back(complex.vertices[v]);
     const PolygonTriangles pieces = triangulate_polygon(polygon, most_crossings - crossings);
     crossings += pieces.crossings.size();
@@ -162,12 +192,16 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
                        " corners crosses itself; with it polygons of the model cross themselves in more than " +
                        std::to_string(most_crossings) +
                        " places, the most for its size. Draw it as polygons that do not, or as triangles.");
-    for (const Vec3& p : pieces.crossings) ids.push_back(weld(p, allowed.contact));
+    for (const Vec3& p : pieces.crossings) {
+      ids.push_back(weld(p, allowed.contact));
+      read_at.push_back(Face::kNone);
+    }
     bool any = false;
     for (const auto& t : pieces.triangles) {
       const std::array<std::uint32_t, 3> corner{ids[t[0]], ids[t[1]], ids[t[2]]};
       if (!has_area(complex, corner)) continue;
-      complex.faces.push_back({corner, soup.material[f], soup.surface[f]});
+      complex.faces.push_back(
+          {corner, soup.material[f], soup.surface[f], {read_at[t[0]], read_at[t[1]], read_at[t[2]]}});
       any = true;
     }
     report.input_triangles += pieces.triangles.size();
@@ -175,6 +209,8 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
   }
   if (!has_size) report.degenerate_faces = face_count - report.non_finite_faces;
   report.welded_vertices = used > complex.vertices.size() ? used - complex.vertices.size() : 0;
+
+  complex.before_welding = std::move(local);
 
   if (complex.faces.empty())
     throw InputError(scene.file + ": no face with an area is left of " + std::to_string(face_count) + " read (" +

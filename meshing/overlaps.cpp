@@ -23,13 +23,13 @@ double depth(const std::array<Point2, 3>& t, const Point2& p) {
 }  // namespace
 
 Covering::Covering(const FaceComplex& complex, const PlaneGroup& group, std::span<const Material> materials)
-    : contact_(complex.allowed.contact), materials_(materials) {
+    : complex_(complex), materials_(materials) {
   std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, double> area;
   pieces_.reserve(group.faces.size());
   std::vector<Box> boxes;
   for (const std::uint32_t f : group.faces) {
     const Face& face = complex.faces[f];
-    Piece piece{{}, true, face.material, face.surface, 0};
+    Piece piece{{}, true, face.material, face.surface, 0, height_as_read(complex, group.plane, face)};
     for (std::size_t k = 0; k < 3; ++k) piece.corner[k] = group.plane.flatten(complex.vertices[face.corner[k]]);
     double a = twice_area(piece.corner[0], piece.corner[1], piece.corner[2]) / 2;
     if (a < 0) {
@@ -51,6 +51,12 @@ Covering::Covering(const FaceComplex& complex, const PlaneGroup& group, std::spa
   if (pieces_.size() > 1) tree_.emplace(pieces_.size(), StoredBoxes{std::move(boxes)});
 }
 
+/// Whether p lies over q, seen from that side.
+bool Covering::hides(const Piece& p, const Piece& q, bool above) const {
+  const double gap = gap_between(complex_, q.height, p.height);
+  return above ? gap > 0 : gap < 0;
+}
+
 const Covering::Piece* Covering::winner(const std::vector<const Piece*>& covering, bool above,
                                         bool by_size_only) const {
   const Piece* best = nullptr;
@@ -60,19 +66,22 @@ const Covering::Piece* Covering::winner(const std::vector<const Piece*>& coverin
     const bool acts = front || m.sides == 2;
     return by_size_only ? std::tuple(0, 0, p.rank) : std::tuple(acts ? 0 : 1, front ? 0 : 1, p.rank);
   };
-  for (const Piece* p : covering)
+  for (const Piece* p : covering) {
+    if (!by_size_only && std::ranges::any_of(covering, [&](const Piece* q) { return hides(*q, *p, above); })) continue;
     if (!best || key(*p) < key(*best)) best = p;
+  }
   return best;
 }
 
 std::optional<Covering::Found> Covering::at(const Point2& p, double reach) const {
+  const double contact = complex_.allowed.contact;
   std::vector<const Piece*> covering;
   if (!tree_) {
     covering.push_back(&pieces_.front());
-    if (depth(covering.front()->corner, p) < -contact_) covering.clear();
+    if (depth(covering.front()->corner, p) < -contact) covering.clear();
   } else {
     // In a cell narrower than the tolerance a point may fall beside the faces that meant to cover it.
-    for (const double slack : {0.0, reach < contact_ ? contact_ : 0.0}) {
+    for (const double slack : {0.0, reach < contact ? contact : 0.0}) {
       if (!covering.empty()) break;
       Box box;
       box.add(Vec3{p.x, p.y, 0});
@@ -88,7 +97,10 @@ std::optional<Covering::Found> Covering::at(const Point2& p, double reach) const
   const Piece* best = winner(covering, true, true);
   Found found;
   found.faces = static_cast<int>(covering.size());
-  if (!materials_[best->material].is_sheet())
+  const bool is_flush = std::ranges::none_of(covering, [&](const Piece* q) {
+    return !materials_[q->material].is_sheet() && gap_between(complex_, best->height, q->height) != 0;
+  });
+  if (!materials_[best->material].is_sheet() || !is_flush)
     std::erase_if(covering, [&](const Piece* q) { return materials_[q->material].is_sheet(); });
   else
     covering.assign(1, best);

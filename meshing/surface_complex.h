@@ -24,10 +24,15 @@ struct Tolerance {
 /// (rounded to millimetres, say), it is tried again with the next.
 inline constexpr std::array kTolerances{Tolerance{6e-7, 0.01}, Tolerance{5e-6, 0.1}, Tolerance{2e-5, 1},
                                         Tolerance{1e-4, 1}};
+/// Smaller ones would be lost in the grid of coordinates (clean.cpp).
+inline constexpr double kLeastTolerance = 5e-10;
+
 struct Face {
+  static constexpr std::uint32_t kNone = 0xffffffff;
   std::array<std::uint32_t, 3> corner;  ///< counter-clockwise around the front
   MaterialId material;
   SurfaceId surface;
+  std::array<std::uint32_t, 3> read_at{kNone, kNone, kNone};  ///< in FaceComplex::before_welding; kNone: at the corner
 };
 
 /// Faces as read, without the defects that a face has by itself. Faces may still overlap, touch and cross each other.
@@ -40,7 +45,13 @@ struct FaceComplex {
   std::vector<double>
       tolerance;  ///< by vertex: `allowed.contact`, less where small faces meet; a line takes its coarser end's
   std::vector<Face> faces;
+  std::vector<Vec3> before_welding;  ///< the model's vertices
+  double rounding = 0;  ///< what may be chance between coordinates as they were read: that of their number format
 
+  /// Corner k of a face, where it was before it was welded to others.
+  const Vec3& as_read(const Face& face, std::size_t k) const {
+    return face.read_at[k] == Face::kNone ? vertices[face.corner[k]] : before_welding[face.read_at[k]];
+  }
   std::uint32_t add_vertex(const Vec3& p, double tolerance_there) {
     vertices.push_back(p);
     tolerance.push_back(tolerance_there);

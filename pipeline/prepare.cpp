@@ -16,7 +16,7 @@
 namespace clerestory {
 namespace {
 
-LitSides all_sides(const PatchSet& patches) { return {std::vector<bool>(2 * patches.triangle_count(), true)}; }
+LitSides all_sides(const PatchSet& patches) { return {std::vector<bool>(2 * patches.triangle_count(), true), {}}; }
 
 std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
                                    const Monitor& monitor, StageSeconds& seconds) {
@@ -38,6 +38,9 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
   p.lights = place_lights(lights, p.patches, p.rays);
   p.lit_sides = has_light(scene) ? find_lit_sides(p.problem(), settings.solve.seed, monitor) : all_sides(p.patches);
   make_patches(p.patches, p.lit_sides.wanted);
+  if (!p.lit_sides.space.empty())
+    for (std::size_t i = 0; i < p.patches.patch_count(); ++i)
+      p.patches.space.push_back(p.lit_sides.space[2 * p.patches.triangle[i] + p.patches.side[i]]);
   lap.add_to(seconds.build);
   return p;
 }

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <numeric>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "solver/gather/gather.h"
 #include "solver/model/parallel.h"
@@ -31,21 +34,23 @@ MeasuredError summarise(std::span<const Comparison> samples) {
   error.samples = samples.size();
   if (samples.empty()) return error;
   const double n = static_cast<double>(samples.size());
-  double mean = 0, squares = 0, variance_of_references = 0;
-  for (const Comparison& s : samples) mean += s.r / n;
+  double mean = 0, squares = 0, variance_of_references = 0, weights = 0;
+  for (const Comparison& s : samples) weights += s.weight / n;
+  const auto share = [&](const Comparison& s) { return s.weight / weights; };  // 1 in the mean
+  for (const Comparison& s : samples) mean += share(s) * s.r / n;
   if (!std::isfinite(mean)) throw std::logic_error("a reference of the measured error is no number");
   if (!(mean > 0)) return {};  // in the dark there is nothing to be wrong about
-  std::vector<double> relative;
+  std::vector<std::pair<double, double>> relative;  // and its share
   for (const Comparison& s : samples) {
-    squares += (s.x - s.r) * (s.x - s.r) / n;
-    variance_of_references += s.std_error * s.std_error / n;
+    squares += share(s) * (s.x - s.r) * (s.x - s.r) / n;
+    variance_of_references += share(s) * s.std_error * s.std_error / n;
     // Points much darker than the mean would make a share of nothing.
-    relative.push_back(std::abs(s.x - s.r) / std::max(s.r, 0.05 * mean));
+    relative.push_back({std::abs(s.x - s.r) / std::max(s.r, 0.05 * mean), share(s)});
   }
   double spread = 0;
   for (const Comparison& s : samples) {
     const double d2 = (s.x - s.r) * (s.x - s.r) - s.std_error * s.std_error - (squares - variance_of_references);
-    spread += d2 * d2 / n;
+    spread += share(s) * share(s) * d2 * d2 / n;
   }
   // The reference's own noise adds to the differences; its variance is known and comes off.
   const double variance_of_field = std::max(squares - variance_of_references, 0.0);
@@ -54,9 +59,11 @@ MeasuredError summarise(std::span<const Comparison> samples) {
   error.confidence = (std::sqrt(variance_of_field + half_width) - std::sqrt(variance_of_field)) / mean;
   // Right when errors are distributed like the noise, and too large when few large errors make up the variance. A
   // distribution fitted to what lies behind the noise was tried: it took tails for noise and was low by a quarter.
-  const auto p95 = relative.begin() + static_cast<std::ptrdiff_t>(0.95 * (n - 1));
-  std::nth_element(relative.begin(), p95, relative.end());
-  error.p95_relative = *p95 * (squares > 0 ? std::sqrt(variance_of_field / squares) : 1.0);
+  std::sort(relative.begin(), relative.end());
+  double below = 0;
+  const auto p95 = std::find_if(relative.begin(), relative.end() - 1,
+                                [&](const auto& r) { return (below += r.second) > 0.95 * (n - 1); });
+  error.p95_relative = p95->first * (squares > 0 ? std::sqrt(variance_of_field / squares) : 1.0);
   return error;
 }
 
@@ -70,6 +77,8 @@ struct References {
 
 /// Traces paths for references at the places of samples whose x is set, as many as the effort allows. Stopped by the
 /// monitor, it takes those that are there.
+///
+/// problem  with other rays than those of the result.
 MeasuredError compare(const Problem& problem, const std::vector<Comparison>& samples, const PointOf& point_of,
                       const ErrorEffort& effort, unsigned long long rays_spent, std::uint64_t key,
                       const Monitor& monitor) {
@@ -96,7 +105,8 @@ MeasuredError compare(const Problem& problem, const std::vector<Comparison>& sam
       if (std::count(finished.begin() + first, finished.begin() + first + std::ptrdiff_t{kReplicates}, 0) > 0) continue;
       const auto [E, std_error] =
           estimate_of(std::span<const Spectrum, kReplicates>(&mean[k * kReplicates], kReplicates));
-      references.at.push_back({samples[sample_of(k)].x, luminous_mean(E), luminous_mean(std_error)});
+      const Comparison& sample = samples[sample_of(k)];
+      references.at.push_back({sample.x, luminous_mean(E), luminous_mean(std_error), sample.weight});
     }
     return references;
   };
@@ -116,34 +126,79 @@ MeasuredError compare(const Problem& problem, const std::vector<Comparison>& sam
 
 }  // namespace
 
+namespace {
+
+/// Patches one after another, space after space, each as long as its chance to be looked at.
+class PatchesBySpace {
+ public:
+  explicit PatchesBySpace(const PatchSet& patches) : order_(patches.patch_count()), cumulative_(patches.patch_count()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    const auto space_of = [&](std::uint32_t i) { return patches.space.empty() ? 0u : patches.space[i]; };
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return space_of(i) < space_of(j); });
+    double all = 0, roots = 0;
+    std::map<std::uint32_t, double> area;
+    for (const std::uint32_t i : order_) area[space_of(i)] += patches.area[i], all += patches.area[i];
+    for (const auto& [space, a] : area) roots += std::sqrt(a);
+    if (!(all > 0)) return;
+    for (const auto& [space, a] : area) {
+      // Half of the looks go by area, and half by its root, so that a small dark room beside a large hall gets some.
+      const double looks = 0.5 * (a / all + std::sqrt(a) / roots);
+      weight_[space] = a / all / looks;
+    }
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      const double weight = weight_[space_of(order_[k])];
+      cumulative_[k] = total_ += weight > 0 ? patches.area[order_[k]] / weight : 0;
+      weight_of_.push_back(weight);
+    }
+  }
+
+  double total() const { return total_; }
+  struct Found {
+    std::size_t patch;
+    double weight;
+  };
+  Found at(double place) const {
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), place);
+    const std::size_t k =
+        std::min<std::size_t>(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1);
+    return {order_[k], weight_of_[k]};
+  }
+
+ private:
+  std::vector<std::uint32_t> order_;
+  std::vector<double> cumulative_, weight_of_;
+  std::map<std::uint32_t, double> weight_;
+  double total_ = 0;
+};
+
+}  // namespace
+
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const ErrorEffort& effort,
                             unsigned long long rays_spent, std::uint64_t seed, const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  std::vector<double> cumulative(patches.patch_count());
-  double area = 0;
-  for (std::size_t i = 0; i < cumulative.size(); ++i) cumulative[i] = area += patches.area[i];
-  if (!(area > 0)) return {};
+  const PatchesBySpace by_space(patches);
+  if (!(by_space.total() > 0)) return {};
+  const RayScene rays = problem.rays.with_nearer_ends();
 
   std::vector<Comparison> samples(kMostPoints);
   std::vector<ReceivingPoint> places(kMostPoints);
   RandomStream random(seed, kErrorPoints);
   for (std::size_t s = 0; s < kMostPoints; ++s) {
-    const double at = (static_cast<double>(s) + random.uniform()) / static_cast<double>(kMostPoints) * area;
-    const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), at);
-    const std::size_t i =
-        std::min<std::size_t>(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
+    const auto [i, weight_of_space] =
+        by_space.at((static_cast<double>(s) + random.uniform()) / static_cast<double>(kMostPoints) * by_space.total());
+    samples[s].weight = weight_of_space;
     const double u = random.uniform(), v = random.uniform();
     // The map is linear in the corners, so it interpolates their values as well as their positions.
     const auto weight = point_on_triangle({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, u, v);
     for (int k = 0; k < 3; ++k)
       samples[s].x += weight[k] * luminous_mean(lightmap.E[lightmap.corners[i][static_cast<std::size_t>(k)]]);
-    places[s] = {
-        problem.rays.off_surface(point_on_triangle(patches.corner_positions(PatchId{i}), u, v), patches.normal[i]),
-        patches.normal[i]};
+    places[s] = {rays.off_surface(point_on_triangle(patches.corner_positions(PatchId{i}), u, v), patches.normal[i]),
+                 patches.normal[i]};
   }
   return compare(
-      problem, samples, [&](std::size_t i) { return places[i]; }, effort, rays_spent, stream_key(seed, kErrorPaths),
-      monitor);
+      {patches, rays, problem.lights}, samples, [&](std::size_t i) { return places[i]; }, effort, rays_spent,
+      stream_key(seed, kErrorPaths), monitor);
 }
 
 MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,
@@ -154,10 +209,11 @@ MeasuredError measure_sensor_error(const Problem& problem, std::span<const Senso
   const auto number_of = [&](std::size_t s) { return s * points.size() / count; };
   std::vector<Comparison> samples(count);
   for (std::size_t s = 0; s < count; ++s) samples[s].x = luminous_mean(E[number_of(s)]);
-  const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
+  const RayScene rays = problem.rays.with_nearer_ends();
+  const PointOf point_of = sensor_points(points, problem.patches.origin, rays);
   return compare(
-      problem, samples, [&](std::size_t s) { return point_of(number_of(s)); }, effort, rays_spent,
-      stream_key(seed, kSensorErrorPaths), monitor);
+      {problem.patches, rays, problem.lights}, samples, [&](std::size_t s) { return point_of(number_of(s)); }, effort,
+      rays_spent, stream_key(seed, kSensorErrorPaths), monitor);
 }
 
 }  // namespace clerestory

@@ -20,9 +20,10 @@ struct MeasuredError {
   double confidence = 0;    ///< half-width of the 95 % interval of rms_relative
 };
 
-/// One comparison: value, reference and the reference's standard error (of eight replicates), as luminous means.
+/// One comparison: value, reference and the reference's standard error (of eight replicates), as luminous means; and
+/// the area it stands for, in any unit.
 struct Comparison {
-  double x = 0, r = 0, std_error = 0;
+  double x = 0, r = 0, std_error = 0, weight = 1;
 };
 /// The noise of the references is taken out: of the mean square by its variance, of the percentile in the same
 /// proportion.

@@ -8,10 +8,9 @@
 namespace clerestory {
 
 PointOf sensor_points(std::span<const SensorPoint> points, const Vec3& origin, const RayScene& rays) {
-  const double lift = 2 * rays.lift();
-  return [points, origin, lift](std::size_t i) {
+  return [points, origin, &rays](std::size_t i) {
     const Vec3 n = points[i].normal;
-    return ReceivingPoint{points[i].position - origin + n * lift, n};
+    return ReceivingPoint{rays.beside_surfaces(points[i].position - origin, n), n};
   };
 }
 

@@ -14,7 +14,7 @@
 
 namespace clerestory {
 
-/// Places of sensor points, given in the scene's frame; they outlive it.
+/// Places of sensor points, given in the scene's frame; they and the rays outlive it.
 PointOf sensor_points(std::span<const SensorPoint> points, const Vec3& origin, const RayScene& rays);
 /// Places of a lightmap's samples; it outlives them.
 PointOf sample_points(const VertexLightmap& lightmap, const RayScene& rays);

@@ -433,6 +433,8 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
     at.E += bright_patches(light, p, frame, pattern, plan, view, row);
     rays += static_cast<unsigned>(to_bright_patches);
   }
+  // Where it is all but dark, what differs from a plan's mean may leave less than nothing.
+  at.E = {std::max(0.0, at.E[0]), std::max(0.0, at.E[1]), std::max(0.0, at.E[2])};
   if (!light.problem.lights.empty()) {
     at.delta_light = light.sampler.delta_light(p, n, pattern.quality().sun_rays, pattern.sun_key(), row);
     at.E += at.delta_light;

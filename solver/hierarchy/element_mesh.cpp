@@ -394,6 +394,7 @@ PatchSet ElementMesh::leaf_patches() const {
   out.triangle.resize(n), out.side.resize(n), out.area.resize(n), out.normal.resize(n);
   out.level.resize(n);
   if (!patches_.joined.empty()) out.joined.resize(n);
+  if (!patches_.space.empty()) out.space.resize(n);
   out.rho = out.M = Field(n, patches_.channels);
   for (std::size_t i = 0; i < n; ++i) {
     const Element& e = elements_[leaf[i]];
@@ -407,6 +408,7 @@ PatchSet ElementMesh::leaf_patches() const {
     out.side_material[i] = patches_.side_material[t];
     out.side_surface[i] = patches_.side_surface[t];
     if (!out.joined.empty()) out.joined[i] = patches_.joined[t];
+    if (!out.space.empty()) out.space[i] = patches_.space[e.patch];
     out.triangle[i] = TriangleId{i};
     out.side[i] = side;
     out.area[i] = e.area;

@@ -67,7 +67,11 @@ template void RowLight::add_row<3>(std::span<const RowEntry>, double*) const;
 Field irradiance(const LightRows& rows, const RowLight& light) {
   Field E(rows.size(), static_cast<int>(light.lanes()));
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) light.add(rows[i], E.value.data() + i * light.lanes());
+    for (std::size_t i = begin; i < end; ++i) {
+      light.add(rows[i], E.value.data() + i * light.lanes());
+      // A row holds differences from means too: where it is all but dark they may leave less than nothing.
+      for (double& e : lanes_of(E, i)) e = std::max(0.0, e);
+    }
   });
   return E;
 }
@@ -76,7 +80,7 @@ void divide_among_layers(const Spectrum& E, int channels, std::span<double> lane
   const auto C = static_cast<std::size_t>(channels);
   for (std::size_t c = 0; c < C; ++c) {
     double sum = 0;
-    for (std::size_t l = c; l < lanes.size(); l += C) sum += lanes[l];
+    for (std::size_t l = c; l < lanes.size(); l += C) sum += lanes[l] = std::max(0.0, lanes[l]);
     if (!(sum > 0)) continue;
     for (std::size_t l = c; l < lanes.size(); l += C) lanes[l] *= E.c[c] / sum;
   }

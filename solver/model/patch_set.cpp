@@ -80,6 +80,7 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   p.area.clear();
   p.normal.clear();
   p.level.clear();
+  p.space.clear();
   p.tau = Field();
   p.behind_begin.clear();
   p.behind.clear();

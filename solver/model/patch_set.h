@@ -56,6 +56,8 @@ struct PatchSet {
   Field M;                           ///< N, exitance [W/m2]
   Field tau;                         ///< N, share that diffusers pass to their other side [1]; empty: there are none
   std::vector<std::uint8_t> level;   ///< N, halvings since the patch; empty: none was halved
+  std::vector<std::uint32_t> space;  ///< N, patches that see each other, directly or over others, have one number;
+                                     ///< empty: not known
   std::vector<bool> spot;  ///< N, lit by the sun or a luminaire, bright for the room around it; empty: not known
 
   /// A patch on the other side of a diffuser's patch, and the share of that patch's area which it covers.

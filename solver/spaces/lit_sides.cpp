@@ -40,9 +40,26 @@ class Spaces {
     joined = {a.lit || b.lit, a.glows || b.glows, one_material ? a.only_material : MaterialId{}};
   }
   void light(std::size_t i) { of_[sets_.find(i)].lit = true; }
+  /// What sees the sky, or nothing but lights: the open air is one space.
+  void light_outdoors(const PatchSet& patches, std::size_t i) {
+    if (outdoors_.valid()) see_each_other(patches, outdoors_, i);
+    outdoors_ = PatchId{i};
+    light(i);
+  }
+  /// All that one light shines on.
+  void light(const PatchSet& patches, std::span<const PatchId> met) {
+    PatchId first;
+    for (const PatchId p : met) {
+      if (!p.valid()) continue;
+      if (first.valid()) see_each_other(patches, first, p);
+      first = p;
+      light(p);
+    }
+  }
 
   bool is_lit(std::size_t i) const { return of_[sets_.name(i)].lit; }
   bool glows(std::size_t i) const { return of_[sets_.name(i)].glows; }
+  std::uint32_t name(std::size_t i) const { return static_cast<std::uint32_t>(sets_.name(i)); }
   /// Invalid when there are several.
   MaterialId only_material(std::size_t i) const { return of_[sets_.name(i)].only_material; }
   /// Takes part, whatever else may be found: nothing that sees it needs to look around for itself.
@@ -58,6 +75,7 @@ class Spaces {
   };
   DisjointSets sets_;
   std::vector<Space> of_;
+  PatchId outdoors_;  ///< one of there
 };
 
 /// Patches seen by rays of patch i.
@@ -162,8 +180,8 @@ void light_by_luminaires(const Problem& problem, std::uint64_t seed, Spaces& spa
       }
     }
   });
-  for (const PatchId patch : met)
-    if (patch.valid()) spaces.light(patch);
+  for (std::size_t number = 0; number < count; ++number)
+    spaces.light(problem.patches, std::span(met).subspan(number * rays_each, rays_each));
 }
 
 /// Sides that rays through the openings meet: of a room behind a slit no ray of its own may find it.
@@ -172,11 +190,12 @@ void light_by_openings(const Problem& problem, std::uint64_t seed, Spaces& space
   for (std::size_t k = 0; k < problem.lights.openings.size(); ++k) {
     const LightArea& opening = problem.lights.openings[k];
     const std::uint64_t key = stream_key(seed, kOpeningRays, k);
+    std::vector<PatchId> met;
     for (std::uint32_t r = 0; r < kRays; ++r) {
       const Ray ray = ray_through(opening, opening.normal, key, r, problem.rays.lift());
-      const Hit hit = problem.rays.first_hit(problem.patches, ray);
-      if (hit.patch.valid()) spaces.light(hit.patch);
+      met.push_back(problem.rays.first_hit(problem.patches, ray).patch);
     }
+    spaces.light(problem.patches, met);
   }
 }
 
@@ -194,7 +213,7 @@ void search_lights(const Problem& problem, const Field& glow, const std::vector<
         found[k] = look_for_lights(problem, emitters, receivers[begin + k], stride, samples, seed);
     });
     for (std::size_t k = 0; k < found.size(); ++k) {
-      if (found[k].lit) spaces.light(receivers[begin + k]);
+      if (found[k].lit) spaces.light_outdoors(problem.patches, receivers[begin + k]);
       for (const PatchId q : found[k].glowing) spaces.see_each_other(problem.patches, receivers[begin + k], q);
     }
   }
@@ -236,7 +255,7 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
     });
     for (std::size_t k = 0; k < seen.size(); ++k) {
       for (const PatchId q : seen[k].patches) spaces.see_each_other(patches, looking[k], q);
-      if (seen[k].sun || (seen[k].outside && problem.lights.sky)) spaces.light(looking[k]);
+      if (seen[k].sun || (seen[k].outside && problem.lights.sky)) spaces.light_outdoors(patches, looking[k]);
     }
   }
   waiting = {};
@@ -275,12 +294,15 @@ LitSides find_lit_sides(const Problem& problem, std::uint64_t seed, const Monito
 
   LitSides result;
   result.wanted.assign(2 * patches.triangle_count(), false);
+  result.space.resize(2 * patches.triangle_count());
   for (std::size_t i = 0; i < n; ++i) {
     const bool lit = spaces.is_lit(i), glows = spaces.glows(i);
     const MaterialId only = spaces.only_material(i);
     const bool inside_luminaire = !lit && glows && only.valid() && lights_others[only];
+    const std::size_t number = 2 * patches.triangle[i] + patches.side[i];
+    result.space[number] = spaces.name(i);
     if (lit || goes_on[i] || (glows && !inside_luminaire))
-      result.wanted[2 * patches.triangle[i] + patches.side[i]] = true;
+      result.wanted[number] = true;
     else
       ++(inside_luminaire ? result.luminaire_interiors : result.dark_sides);
   }

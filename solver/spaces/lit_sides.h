@@ -11,6 +11,7 @@ namespace clerestory {
 
 struct LitSides {
   std::vector<bool> wanted;             ///< 2T, for make_patches()
+  std::vector<std::uint32_t> space;     ///< 2T, the space that a side sees, for PatchSet::space; empty: not known
   std::size_t dark_sides = 0;           ///< sides no light reaches: inside solids, outside of sealed rooms
   std::size_t luminaire_interiors = 0;  ///< emitting sides that only see the inside of their own luminaire body
 };

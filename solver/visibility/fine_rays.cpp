@@ -26,13 +26,17 @@ struct Query {
 }  // namespace
 
 struct FineRays::Impl {
-  std::vector<Vec3> vertices;
-  std::vector<std::array<VertexId, 3>> corners;
-  std::vector<bool> is_glass;
+  const std::vector<Vec3>& vertices;
+  const std::vector<std::array<VertexId, 3>>& corners;
   double diameter;
+  std::vector<bool> is_glass;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
+  Impl(const std::vector<Vec3>& v, const std::vector<std::array<VertexId, 3>>& c, double d)
+      : vertices(v), corners(c), diameter(d) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
@@ -105,11 +109,10 @@ struct FineRays::Impl {
   }
 };
 
-FineRays::FineRays(const PatchSet& patches, double diameter) : impl_(std::make_unique<Impl>()) {
+FineRays::FineRays(const PatchSet& patches, const std::vector<Vec3>& vertices,
+                   const std::vector<std::array<VertexId, 3>>& corners, double diameter)
+    : impl_(std::make_unique<Impl>(vertices, corners, diameter)) {
   Impl& self = *impl_;
-  self.vertices = patches.vertices;
-  self.corners = patches.corners;
-  self.diameter = diameter;
   for (std::size_t t = 0; t < patches.triangle_count(); ++t)
     self.is_glass.push_back(patches.front_material(TriangleId{t}).lets_rays_pass());
   self.device = rtcNewDevice("set_affinity=0");
@@ -154,7 +157,7 @@ std::vector<FineRays::Met> FineRays::glass(const Vec3& origin, const Vec3& direc
   const auto share_a_corner = [&](const Met& a, const Met& b) {
     for (const VertexId v : impl_->corners[a.triangle])
       for (const VertexId w : impl_->corners[b.triangle])
-        if (v.value == w.value) return true;
+        if (impl_->vertices[v] == impl_->vertices[w]) return true;
     return false;
   };
   std::vector<Met> panes;

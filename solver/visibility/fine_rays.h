@@ -21,7 +21,9 @@ class FineRays {
     bool front = false;   ///< on the side from which the corners run counter-clockwise
   };
 
-  FineRays(const PatchSet& patches, double diameter);
+  /// patches tells which triangles are glass; vertices and corners, its own or copies, outlive the rays.
+  FineRays(const PatchSet& patches, const std::vector<Vec3>& vertices,
+           const std::vector<std::array<VertexId, 3>>& corners, double diameter);
   FineRays(FineRays&&) noexcept;
   FineRays& operator=(FineRays&&) noexcept;
   ~FineRays();

@@ -71,6 +71,25 @@ struct Surfaces {
     rtcCommitScene(handle);
     if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::bad_alloc();
   }
+
+  /// Calls found(triangle) for the triangles whose boxes come within `reach` of p.
+  template <class Found>
+  void visit_near(const Vec3& p, double reach, const Found& found) const {
+    struct Visit {
+      const Surfaces* surfaces;
+      const Found* found;
+    } visit{this, &found};
+    RTCPointQuery query{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0,
+                        static_cast<float>(reach)};
+    RTCPointQueryContext c;
+    rtcInitPointQueryContext(&c);
+    const auto note = [](RTCPointQueryFunctionArguments* args) {
+      const auto& to = *static_cast<const Visit*>(args->userPtr);
+      (*to.found)(TriangleId{to.surfaces->of_primitive[args->primID]});
+      return false;  // the reach stays
+    };
+    if (!of_primitive.empty()) rtcPointQuery(handle, &query, &c, note, &visit);
+  }
 };
 
 RTCIntersectContext context(RTCIntersectContextFlags flags) {
@@ -108,6 +127,8 @@ struct RayScene::Impl {
   std::vector<MirrorPlane> planes;
   static constexpr std::uint32_t kNone = 0xffffffff;
   double diameter = 0;
+  std::vector<Vec3> vertices;  ///< in double, for what float cannot tell
+  std::vector<std::array<VertexId, 3>> corners;
   TightPlaces tight;
   std::optional<FineRays> fine;  ///< when any place is tight
 
@@ -132,8 +153,8 @@ struct RayScene::Impl {
     }
   }
 
-  Vec3 off_surface(const Vec3& p, const Vec3& n) const {
-    return p + n * ((tight.contains(p) ? kFineLift : kLift) * diameter);
+  Vec3 off_surface(const Vec3& p, const Vec3& n, double share) const {
+    return p + n * (share * (tight.contains(p) ? kFineLift : kLift) * diameter);
   }
 
   const Mirror* mirror_at(TriangleId t) const {
@@ -180,7 +201,7 @@ struct RayScene::Impl {
       if (!mirror) return;
       const double along = dot(mirror->normal, ray.direction);
       const Vec3 n = along < 0 ? mirror->normal : -mirror->normal;
-      ray = {off_surface(hit.position(first), n), ray.direction - mirror->normal * (2 * along)};
+      ray = {off_surface(hit.position(first), n, 1), ray.direction - mirror->normal * (2 * along)};
       const Spectrum so_far = hit.transmittance * mirror->reflectance;
       const double to_first = hit.first;
       hit = one_leg(patches, ray);
@@ -235,22 +256,28 @@ struct RayScene::Impl {
   bool fine_visible(const Vec3& from, const Vec3& to) const { return !fine->first(from, to - from, 1).has_value(); }
 };
 
-RayScene::RayScene(const PatchSet& patches) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const PatchSet& patches) {
+  auto impl = std::make_shared<Impl>();
   Vec3 lower(kInfinity, kInfinity, kInfinity), upper(-kInfinity, -kInfinity, -kInfinity);
   for (const Vec3& v : patches.vertices) {
     lower = {std::min(lower.x, v.x), std::min(lower.y, v.y), std::min(lower.z, v.z)};
     upper = {std::max(upper.x, v.x), std::max(upper.y, v.y), std::max(upper.z, v.z)};
   }
-  impl_->diameter = patches.vertices.empty() ? 0 : length(upper - lower);
+  impl->vertices = patches.vertices;
+  impl->corners = patches.corners;
+  impl->diameter = patches.vertices.empty() ? 0 : length(upper - lower);
   on_one_thread([&] {  // the tree decides which of two equally near triangles is met
-    impl_->opaque.build(impl_->device.handle, patches, false);
-    impl_->glass.build(impl_->device.handle, patches, true);
+    impl->opaque.build(impl->device.handle, patches, false);
+    impl->glass.build(impl->device.handle, patches, true);
   });
-  impl_->tabulate_glass(patches);
-  impl_->find_mirrors(patches);
-  impl_->tight = TightPlaces(patches, lift());
-  if (impl_->tight.any()) impl_->fine.emplace(patches, impl_->diameter);
+  impl->tabulate_glass(patches);
+  impl->find_mirrors(patches);
+  impl->tight = TightPlaces(patches, kLift * impl->diameter);
+  if (impl->tight.any()) impl->fine.emplace(patches, impl->vertices, impl->corners, impl->diameter);
+  impl_ = std::move(impl);
 }
+RayScene::RayScene(std::shared_ptr<const Impl> impl, double lift_share)
+    : impl_(std::move(impl)), lift_share_(lift_share) {}
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
@@ -258,11 +285,32 @@ RayScene::~RayScene() = default;
 bool RayScene::has_mirrors() const { return !impl_->mirrors.empty(); }
 const std::vector<MirrorPlane>& RayScene::mirrors() const { return impl_->planes; }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
-double RayScene::lift() const { return kLift * impl_->diameter; }
-Vec3 RayScene::off_surface(const Vec3& p, const Vec3& n) const { return impl_->off_surface(p, n); }
+double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }
+Vec3 RayScene::off_surface(const Vec3& p, const Vec3& n) const { return impl_->off_surface(p, n, lift_share_); }
+RayScene RayScene::with_nearer_ends() const { return {impl_, 0.25}; }
 bool RayScene::has_tight_places() const { return impl_->tight.any(); }
 bool RayScene::is_tight(const Vec3& p) const { return impl_->tight.contains(p); }
 double RayScene::diameter() const { return impl_->diameter; }
+
+Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
+  const double fine = kFineLift * impl_->diameter;
+  if (is_tight(p)) return p + n * fine;
+  std::vector<TriangleId> near;
+  const auto note = [&](TriangleId t) { near.push_back(t); };
+  for (const Surfaces* surfaces : {&impl_->opaque, &impl_->glass}) surfaces->visit_near(p, 2 * lift(), note);
+  std::sort(near.begin(), near.end(), [](TriangleId a, TriangleId b) { return a.value < b.value; });
+  Vec3 at = p;
+  for (const TriangleId t : near) {
+    const std::array c{impl_->vertices[impl_->corners[t][0]], impl_->vertices[impl_->corners[t][1]],
+                       impl_->vertices[impl_->corners[t][2]]};
+    if (distance2_to_triangle(at, c) >= lift() * lift()) continue;
+    const Vec3 normal = normalized(cross(c[1] - c[0], c[2] - c[0]));
+    const double h = dot(normal, at - c[0]);
+    const bool is_above = std::abs(h) > fine ? h > 0 : dot(normal, n) >= 0;
+    at += normal * ((is_above ? lift() : -lift()) - h);
+  }
+  return at;
+}
 
 void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const {
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);

@@ -101,6 +101,12 @@ class RayScene {
   /// surface is near; in tight places (tight_places.h) 1e-10 of the diagonal, and rays that start, end or land there
   /// are traced in double precision (fine_rays.h).
   Vec3 off_surface(const Vec3& p, const Vec3& n) const;
+  /// Where rays start for a point in the air, p itself unless a surface is nearer than rounding: then on p's side of
+  /// it, or, when p lies in it, on the side that n shows.
+  Vec3 beside_surfaces(const Vec3& p, const Vec3& n) const;
+  /// The same surfaces for rays whose ends are lifted a quarter as far: what a lift does to a result is seen by rays
+  /// that have another.
+  RayScene with_nearer_ends() const;
   /// The distance by which ray ends are lifted where there is room: 5e-7 of the diagonal, a few units in the last place
   /// at the rim of the scene [m].
   double lift() const;
@@ -112,7 +118,9 @@ class RayScene {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  RayScene(std::shared_ptr<const Impl> impl, double lift_share);
+  std::shared_ptr<const Impl> impl_;
+  double lift_share_ = 1;
 };
 
 }  // namespace clerestory

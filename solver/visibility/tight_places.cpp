@@ -70,8 +70,9 @@ class Prism {
   std::array<Vec3, 3> inward_;  ///< unit normals of the edges within the plane
 };
 
-/// Square of the distance from p to a triangle. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.
-double distance2(const Vec3& p, const std::array<Vec3, 3>& t) {
+}  // namespace
+
+double distance2_to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
   const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
   const auto to = [&](const Vec3& q) { return dot(p - q, p - q); };
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -92,8 +93,6 @@ double distance2(const Vec3& p, const std::array<Vec3, 3>& t) {
   const double h = dot(n, ap);
   return h * h / dot(n, n);
 }
-
-}  // namespace
 
 TightPlaces::TightPlaces(const PatchSet& patches, double lift) : reach_(kReach * lift) {
   const std::size_t count = patches.triangle_count();
@@ -133,7 +132,7 @@ bool TightPlaces::contains(const Vec3& p) const {
         return !found && p.x >= box.lower.x && p.x <= box.upper.x && p.y >= box.lower.y && p.y <= box.upper.y &&
                p.z >= box.lower.z && p.z <= box.upper.z;
       },
-      [&](std::uint32_t k) { found = found || distance2(p, triangles_[k]) <= reach_ * reach_; });
+      [&](std::uint32_t k) { found = found || distance2_to_triangle(p, triangles_[k]) <= reach_ * reach_; });
   return found;
 }
 

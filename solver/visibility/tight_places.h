@@ -1,6 +1,7 @@
 #pragma once
 // Where surfaces lie too near each other for rays in float.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -32,5 +33,8 @@ class TightPlaces {
   std::vector<std::array<Vec3, 3>> triangles_;  ///< the tight ones
   std::optional<BoxTree<StoredBoxes>> tree_;    ///< of their boxes, grown by the reach
 };
+
+/// Square of the distance from p to a triangle [m2]. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.
+double distance2_to_triangle(const Vec3& p, const std::array<Vec3, 3>& triangle);
 
 }  // namespace clerestory

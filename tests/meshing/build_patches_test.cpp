@@ -302,6 +302,81 @@ TEST(BuildPatches, ALampInACeilingThatFacesUpKeepsTheFloorAboveIt) {
   EXPECT_NEAR(down, 2, 15 * kRounding);
 }
 
+/// A ceiling of 4 x 4 m and a smaller panel over it, both looking up; numbers that single precision does not hold.
+SceneMaker ceiling_and_panel(double gap, MaterialId& ceiling, MaterialId& panel, double from = 1.1, double to = 3.1) {
+  SceneMaker maker;
+  ceiling = maker.material("ceiling"), panel = maker.material("panel");
+  maker.polygon({{0, 0, 2.7}, {4, 0, 2.7}, {4, 4, 2.7}, {0, 4, 2.7}}, ceiling);
+  const double z = 2.7 + gap;
+  maker.polygon({{from, from, z}, {to, from, z}, {to, to, z}, {from, to, z}}, panel);
+  return maker;
+}
+
+TEST(BuildPatches, SheetsAHairApartStayTwoHoweverSmallTheGap) {
+  for (const double gap : {-1e-3, -1e-6, -1e-7, 2e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-3})
+    for (const bool same_size : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "gap " << gap << (same_size ? ", same size" : ""));
+      MaterialId ceiling, panel;
+      SceneMaker maker =
+          same_size ? ceiling_and_panel(gap, ceiling, panel, 0, 4) : ceiling_and_panel(gap, ceiling, panel);
+      const auto [p, report] = mesh(maker, 0.5);
+      EXPECT_EQ(t_vertices(p), 0u);
+      for (const Side side : {kFront, kBack}) {
+        EXPECT_NEAR(area_of(p, ceiling, side), 16, 16 * kRounding);
+        EXPECT_NEAR(area_of(p, panel, side), same_size ? 16 : 4, 16 * kRounding);
+      }
+      for (std::size_t t = 0; t < p.triangle_count(); ++t) {
+        const double z = p.vertices[p.corners[t][0]].z + p.origin.z;
+        EXPECT_NEAR(z - 2.7, p.side_material[t][kFront] == panel ? gap : 0, 3e-9);  // the grid
+      }
+    }
+}
+
+TEST(BuildPatches, SheetsInOnePlaneAreJoinedStill) {
+  for (const double gap : {0.0, 5e-9}) {
+    MaterialId ceiling, panel;
+    SceneMaker maker = ceiling_and_panel(gap, ceiling, panel);
+    const auto [p, report] = mesh(maker, 0.5);
+    expect_sound(p);
+    EXPECT_NEAR(surface_area(p), 16, 16 * kRounding);
+    EXPECT_EQ(report.overlapping_regions, 1u);
+  }
+}
+
+TEST(BuildPatches, SheetsThatAnInexactModelJoinsShowTheOutermostOnEachSide) {
+  // What makes it inexact: boxes turned on each other, corners rounded to millimetres.
+  MaterialId ceiling, panel;
+  for (const double gap : {-2e-6, 2e-6}) {
+    SceneMaker maker = ceiling_and_panel(gap, ceiling, panel);
+    const MaterialId other = maker.material("other");
+    const std::size_t first = maker.scene().polygons.vertices.size();
+    for (int i = 0; i < 12; ++i) maker.box({0.7 * i, 0.5 * i, 0}, {0.7 * i + 8, 0.5 * i + 10, 3.0 + (i % 3)}, other);
+    auto& vertices = maker.scene().polygons.vertices;
+    for (std::size_t v = first; v < vertices.size(); ++v) {
+      const Vec3 turned{std::cos(0.3) * vertices[v].x - std::sin(0.3) * vertices[v].y,
+                        std::sin(0.3) * vertices[v].x + std::cos(0.3) * vertices[v].y, vertices[v].z};
+      vertices[v] = {std::round(turned.x * 1e3) / 1e3 + 30, std::round(turned.y * 1e3) / 1e3, turned.z};
+    }
+    const auto [p, report] = build_patches(maker.scene());
+    ASSERT_GT(report.tolerance, 1e-5);  // far above the gap
+    const Side up = kFront, down = kBack;
+    EXPECT_NEAR(area_of(p, panel, up), gap > 0 ? 4 : 0, 1e-4);
+    EXPECT_NEAR(area_of(p, panel, down), gap > 0 ? 0 : 4, 1e-4);
+    EXPECT_NEAR(area_of(p, ceiling, up), gap > 0 ? 12 : 16, 1e-4);
+    EXPECT_NEAR(area_of(p, ceiling, down), gap > 0 ? 16 : 12, 1e-4);
+  }
+}
+
+TEST(BuildPatches, APaneBeforeAWallDoesNotOpenIt) {
+  for (const double gap : {1e-7, 1e-6, 1e-4}) {
+    MaterialId wall, pane;
+    SceneMaker maker = ceiling_and_panel(gap, wall, pane);
+    maker.edit(pane).kind = MaterialKind::glass;
+    const PatchSet p = mesh(maker, 0.5).patches;
+    for (const Side side : {kFront, kBack}) EXPECT_NEAR(area_of(p, wall, side), 16, 16 * kRounding) << gap;
+  }
+}
+
 TEST(BuildPatches, SolidsThatShareAWallInPartHaveItOnce) {
   SceneMaker maker;
   maker.box({0, 0, 0}, {2, 2, 2});

@@ -1,5 +1,6 @@
 #include "solver/evaluate/measured_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -8,6 +9,7 @@
 
 #include "solver/model/random_stream.h"
 #include "solver/paths/path_tracer.h"
+#include "tests/support/unjoined_lightmap.h"
 
 namespace clerestory {
 namespace {
@@ -81,6 +83,39 @@ TEST(MeasuredError, TakesPureNoiseForAlmostNothing) {
   const Outcome o = measure(256, 0.02, 0, [](RandomStream&) { return 0.0; });
   EXPECT_LT(std::sqrt(o.rms_squared), 0.006);  // the mean square of 256 differences is known to 9 %
   EXPECT_LT(o.p95, 0.6 * 1.96 * 0.02);
+}
+
+TEST(MeasuredError, CountsComparisonsByTheAreaTheyStandFor) {
+  // Nine tenths of the area are off by 1 %, one tenth by 10 %, and both were looked at equally often.
+  std::vector<Comparison> comparisons;
+  for (int k = 0; k < 100; ++k) comparisons.push_back({1.01, 1, 0, 0.9}), comparisons.push_back({1.1, 1, 0, 0.1});
+  const MeasuredError e = summarise(comparisons);
+  EXPECT_NEAR(e.rms_relative, std::sqrt(0.9 * 0.01 * 0.01 + 0.1 * 0.1 * 0.1), 1e-12);
+  EXPECT_NEAR(e.p95_relative, 0.1, 1e-12);
+}
+
+TEST(MeasuredError, LooksIntoASmallDarkSpaceBesideALargeBrightOne) {
+  // Two closed rooms; the small one has 1 / 2501 of the area, 0.4 of 1024 points. The large one glows, E = M / (1 -
+  // rho) = 100 everywhere; the small one is dark, and the result shows 100 there as well: rms 100 sqrt(1 / 2501) of
+  // 100.
+  test::PatchBuilder b;
+  const auto room = [&](double x, double size) {
+    b.box({x, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}, {1, 1, 1}, true);
+  };
+  b.material(0.5, 50);
+  room(0, 10);
+  b.material(0.5);
+  room(20, 0.2);
+  PatchSet patches = b.build();
+  for (std::size_t i = 0; i < patches.patch_count(); ++i)
+    patches.space.push_back(patches.corner_positions(PatchId{i})[0].x > 15 ? 1 : 0);
+  const RayScene rays(patches);
+  const Lights lights;
+  VertexLightmap map = test::unjoined_lightmap(patches);
+  map.E = Field(map.position.size(), 1);
+  std::ranges::fill(map.E.value, 100);
+  const MeasuredError e = measure_error({patches, rays, lights}, map, {1024, 64, 1e6}, 0, 1);
+  EXPECT_NEAR(e.rms_relative, 0.02, 0.01);  // ten points see it
 }
 
 }  // namespace

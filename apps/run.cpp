@@ -56,6 +56,9 @@ ExitCode run(const CommonArguments& arguments, const std::string& input, std::ve
     refuse_to_overwrite(input, files);
     console.emplace(arguments);
     return work(*console);
+  } catch (const Interrupted& e) {
+    if (console) console->warn(e.what());
+    return kInterrupted;
   } catch (const InputError& e) {
     return fail(e.what(), kInputRefused);
   } catch (const std::bad_alloc&) {

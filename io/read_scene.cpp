@@ -29,7 +29,7 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
   Scene scene;
   scene.file = file.string();
   if (options.sky) scene.lights.sky = sky_of_option(*options.sky);
-  place_model(scene, read_model(file), file, placement, [](Material&) { return false; });
+  place_model(scene, read_model(file, options.should_stop), file, placement);
   return scene;
 }
 
@@ -44,7 +44,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
                                        : "sky",
                           " is for a model given directly; write it into the scene file"));
   }
-  return read_scene_file(file);
+  return read_scene_file(file, options.should_stop);
 }
 
 }  // namespace clerestory

@@ -2,6 +2,7 @@
 // File -> Scene.
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -14,11 +15,13 @@ struct ReadOptions {
   std::optional<std::string> unit;  ///< m | cm | mm | ft | in
   std::optional<std::string> up;    ///< y | z
   std::optional<std::string> sky;   ///< NAME[:LUX]
+  std::function<bool()> should_stop{};  ///< asked while a model is read that takes long; when true, Interrupted
 };
 
 /// Reads a scene file (.json) or a model (.obj .glb .gltf .ply .stl .off .dae .fbx .ifc) into metres, z up.
 ///
 /// throws  InputError naming file, place (line or element), value, what is allowed and what to do.
+///         Interrupted.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace clerestory

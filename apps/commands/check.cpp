@@ -6,6 +6,7 @@
 #include "apps/effective_settings.h"
 #include "apps/finish_report.h"
 #include "apps/mesh_summary.h"
+#include "apps/read_input.h"
 #include "apps/run.h"
 #include "pipeline/prepare.h"
 #include "pipeline/scene_checks.h"
@@ -91,8 +92,23 @@ void say_lights(const Scene& scene, Console& console) {
     console.warn(scene.file + ": there is no light; a solve would be refused. Add --sky NAME:LUX.");
 }
 
+void say_spaces(const std::vector<RunReport::Space>& spaces, Console& console) {
+  for (const RunReport::Space& s : spaces)
+    console.say("  space    '" + s.name + "'" + (s.long_name.empty() ? "" : " (" + s.long_name + ")") + ": " +
+                (s.volume > 0 ? rounded(s.area) + " m2, " + rounded(s.height) + " m high, " + rounded(s.volume) + " m3"
+                              : "without a volume"));
+}
+
+void say_not_read(const Scene& scene, Console& console) {
+  for (const NotRead& n : scene.not_read)
+    console.say("  not read " + std::to_string(n.count) + " x " + n.what +
+                (n.first.empty() ? "" : ", the first '" + n.first + "'"));
+  if (scene.model_north_deg)
+    console.say("  north    " + rounded(*scene.model_north_deg) + " degrees clockwise from +y, by the model");
+}
+
 ExitCode check_command(const Arguments& arguments, Console& console) {
-  const Scene scene = read_scene(arguments.input, arguments.read);
+  const Scene scene = read_input(arguments.input, arguments.read, console);
   const Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   warn_about_scene(scene, console);
   RunReport report = new_report(arguments.input);
@@ -113,6 +129,10 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   say_mesh(repairs, console);
   say_materials(scene, console);
   say_lights(scene, console);
+  report.spaces = figures_of(scene.spaces);
+  report.not_read = scene.not_read;
+  say_spaces(report.spaces, console);
+  say_not_read(scene, console);
 
   report.settings = as_figures(settings, patches.channels, arguments.read);
   report.repairs = repairs;

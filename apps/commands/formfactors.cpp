@@ -9,6 +9,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/finish_report.h"
+#include "apps/read_input.h"
 #include "apps/run.h"
 #include "io/atomic_file.h"
 #include "io/run_report.h"
@@ -111,7 +112,7 @@ std::string four_digits(double value) {
 
 ExitCode formfactors_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
-  const Scene scene = read_scene(arguments.input, arguments.read);
+  const Scene scene = read_input(arguments.input, arguments.read, console);
   for (const std::string& warning : scene.warnings) console.note(warning);
   const PatchSet patches = faces_as_patches(scene);
   if (patches.patch_count() == 0)

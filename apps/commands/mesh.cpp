@@ -6,6 +6,7 @@
 #include "apps/effective_settings.h"
 #include "apps/finish_report.h"
 #include "apps/mesh_summary.h"
+#include "apps/read_input.h"
 #include "apps/run.h"
 #include "io/atomic_file.h"
 #include "io/write_result.h"
@@ -25,7 +26,7 @@ struct Arguments {
 
 ExitCode mesh_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
-  const Scene scene = read_scene(arguments.input, arguments.read);
+  const Scene scene = read_input(arguments.input, arguments.read, console);
   const Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   warn_about_scene(scene, console);
   RunReport report = new_report(arguments.input);

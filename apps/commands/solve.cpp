@@ -5,6 +5,7 @@
 #include "apps/commands/commands.h"
 #include "apps/effective_settings.h"
 #include "apps/finish_report.h"
+#include "apps/read_input.h"
 #include "apps/run.h"
 #include "apps/solve_report.h"
 #include "io/atomic_file.h"
@@ -75,7 +76,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   RunReport report = new_report(arguments.input);
 
-  Scene scene = read_scene(arguments.input, arguments.read);
+  Scene scene = read_input(arguments.input, arguments.read, console);
   if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
   Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   settings.start = console.start();

@@ -12,6 +12,7 @@ constexpr std::size_t kShown = 6;
 }  // namespace
 
 void NameList::add(const std::string& name) {
+  if (count_ == 0) first_ = name;
   if (++count_ <= kShown) list_ += (list_.empty() ? "'" : ", '") + quotable(name) + "'";
 }
 

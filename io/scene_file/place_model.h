@@ -23,8 +23,15 @@ std::optional<double> metres_of_unit(std::string_view unit);
 /// Gives a material what the scene file says about its name, and returns whether it says anything.
 using MaterialOverride = std::function<bool(Material&)>;
 
+/// The luminaire that the scene file names for a fixture, its position, axes and names in the scene's frame; nothing
+/// when it names none.
+using FixtureLight = std::function<std::optional<Luminaire>(const ModelFixture&)>;
+
+/// A fixture becomes the luminaire that by_fixture names for it, else those that the model itself describes, and its
+/// housing is left out: photometry is of the whole luminaire. What stays without light keeps its surface, and is said.
+///
 /// throws  InputError naming the surface whose coordinates leave the representable range.
 void place_model(Scene& scene, const Model& model, const std::filesystem::path& file, const Placement& placement,
-                 const MaterialOverride& by_scene_file);
+                 const MaterialOverride& by_scene_file = {}, const FixtureLight& by_fixture = {});
 
 }  // namespace clerestory

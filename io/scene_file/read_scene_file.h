@@ -3,13 +3,13 @@
 
 #include <filesystem>
 
-#include "solver/model/scene.h"
+#include "io/formats/model.h"
 
 namespace clerestory {
 
 /// Reads a scene file as docs/models.md and the pages beside it describe it, and the models it names.
 ///
 /// throws  InputError naming file and line, or the key, what is wrong and what is allowed.
-Scene read_scene_file(const std::filesystem::path& file);
+Scene read_scene_file(const std::filesystem::path& file, const ShouldStop& should_stop = {});
 
 }  // namespace clerestory

@@ -1,5 +1,7 @@
 // clerestory check: what is in a model, what is wrong with it, and what a solve would make of it. Nothing is solved.
 
+#include <cmath>
+
 #include <CLI/CLI.hpp>
 
 #include "apps/commands/commands.h"
@@ -103,7 +105,7 @@ void say_not_read(const Scene& scene, Console& console) {
   for (const NotRead& n : scene.not_read)
     console.say("  not read " + std::to_string(n.count) + " x " + n.what +
                 (n.first.empty() ? "" : ", the first '" + n.first + "'"));
-  if (scene.model_north_deg)
+  if (scene.model_north_deg && std::abs(*scene.model_north_deg) > 0.01)
     console.say("  north    " + rounded(*scene.model_north_deg) + " degrees clockwise from +y, by the model");
 }
 

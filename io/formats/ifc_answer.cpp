@@ -163,7 +163,7 @@ void read_end(const Json& json, const std::filesystem::path& file, Model& model)
   for (const NotRead& note : read_notes(json, "warnings")) model.warnings.push_back(line_of(note));
   for (const NotRead& note : read_notes(json, "complaints"))
     model.warnings.push_back(text(line_of(note), note.first.empty() ? "" : ", says web-ifc"));
-  for (const char* key : {"warnings", "complaints", "left_out"})
+  for (const char* key : {"complaints", "left_out"})
     for (NotRead& note : read_notes(json, key)) model.not_read.push_back(std::move(note));
 }
 
@@ -219,7 +219,9 @@ Model model_of_ifc_answer(std::string_view answer, const std::filesystem::path& 
     read.mesh.material = MaterialId(read.material);
     add_mesh(model, read.mesh, read.place, SurfaceId(read.owner), name);
   }
-  if (model.polygons.face_count() == 0) throw InputError(text(name, ": has no faces; nothing to light"));
+  if (model.polygons.face_count() == 0)
+    throw InputError(text(name, ": has no faces; nothing to light",
+                          model.warnings.empty() ? "" : text("; ", model.warnings.front())));
   return model;
 }
 

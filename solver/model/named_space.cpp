@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace clerestory {
 namespace {
+
+constexpr std::size_t kMostToCount = 3000;
 
 template <class Visit>
 void each_triangle(const NamedSpace& space, const Visit& visit) {
@@ -17,6 +20,20 @@ double side(const Vec3& p, const Vec3& q, double x, double y) {
   return (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x);
 }
 
+/// Where the vertical line through (x, y) meets a triangle; nothing when it passes by, or the triangle stands up.
+std::optional<double> height_at(const Vec3& a, const Vec3& b, const Vec3& c, double x, double y) {
+  const double area = cross(b - a, c - a).z;
+  if (area == 0) return std::nullopt;
+  // An edge counts to its left, taken upwards, so that the line meets one of two triangles at their common edge.
+  const auto is_left = [&](const Vec3& p, const Vec3& q) {
+    const bool down = p.y > q.y || (p.y == q.y && p.x > q.x);
+    return down ? side(q, p, x, y) < 0 : side(p, q, x, y) >= 0;
+  };
+  const bool left = area > 0;
+  if (is_left(a, b) != left || is_left(b, c) != left || is_left(c, a) != left) return std::nullopt;
+  return (side(b, c, x, y) * a.z + side(c, a, x, y) * b.z + side(a, b, x, y) * c.z) / area;
+}
+
 }  // namespace
 
 double floor_area(const NamedSpace& space) {
@@ -27,12 +44,27 @@ double floor_area(const NamedSpace& space) {
 
 double volume(const NamedSpace& space) {
   if (!space.has_volume()) return 0;
-  const Vec3 from = space.vertices[space.corner[0]];  // near, so that a site far from the origin keeps its digits
-  double six = 0;
+  const Vec3 from = space.vertices[space.corner[0]];
+  if (space.corner.size() > 3 * kMostToCount) {
+    double six = 0;
+    each_triangle(
+        space, [&](const Vec3& a, const Vec3& b, const Vec3& c) { six += dot(a - from, cross(b - from, c - from)); });
+    return std::abs(six) / 6;
+  }
+  const double low = from.z;  // near, so that a space far up keeps its digits
+  double sum = 0;
   each_triangle(space, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    six += dot(a - from, cross(b - from, c - from));
+    const Vec3 middle = (a + b + c) / 3;
+    // A floor has an even number of faces below it, a ceiling an odd one; models wind their faces as they like.
+    std::size_t below = 0;
+    each_triangle(space, [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+      const auto z = height_at(p, q, r, middle.x, middle.y);
+      below += z && *z < middle.z - 1e-9;
+    });
+    const double area = std::abs(cross(b - a, c - a).z) / 2;
+    sum += (below % 2 == 1 ? area : -area) * (middle.z - low);
   });
-  return std::abs(six) / 6;
+  return std::abs(sum);
 }
 
 double height(const NamedSpace& space) {
@@ -45,16 +77,7 @@ double height(const NamedSpace& space) {
 std::vector<SpaceSpan> spans_at(const NamedSpace& space, double x, double y) {
   std::vector<double> z;
   each_triangle(space, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double area = cross(b - a, c - a).z;
-    if (area == 0) return;
-    // An edge counts to its left, taken upwards, so that the line meets one of two triangles at their common edge.
-    const auto is_left = [&](const Vec3& p, const Vec3& q) {
-      const bool down = p.y > q.y || (p.y == q.y && p.x > q.x);
-      return down ? side(q, p, x, y) < 0 : side(p, q, x, y) >= 0;
-    };
-    const bool left = area > 0;
-    const bool in = is_left(a, b) == left && is_left(b, c) == left && is_left(c, a) == left;
-    if (in) z.push_back((side(b, c, x, y) * a.z + side(c, a, x, y) * b.z + side(a, b, x, y) * c.z) / area);
+    if (const auto at = height_at(a, b, c, x, y)) z.push_back(*at);
   });
   std::sort(z.begin(), z.end());
   std::vector<SpaceSpan> spans;

@@ -70,7 +70,7 @@ export class Lights {
   addDistribution(source, line) {
     if (line && 'LightDistributionCurve' in line) {
       const planes = idsOf(line.DistributionData).map((id) => this.file.get(id));
-      const angle = (v) => (numberOf(v) ?? NaN) * this.degrees;
+      const angle = (v) => Math.round((numberOf(v) ?? NaN) * this.degrees * 1e3) / 1e3;  // 1.5708 is 90 degrees
       const numbers = (list) => (Array.isArray(list) ? list : []);
       source.distribution = {
         type: String(line.LightDistributionCurve?.value ?? ''),

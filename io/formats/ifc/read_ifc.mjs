@@ -83,14 +83,14 @@ class Reader {
     this.lights = new Lights(file, this.metres);
     const products = file.all('IfcProduct').sort((a, b) => a - b);
     for (const id of products) await this.readProduct(id);
-    for (const id of this.lights.unused()) this.leftOut.add('light source of no product', textOf(file.get(id)?.Name));
+    for (const id of this.lights.unused()) this.leftOut.add('light source of no product', textOf(this.file.get(id)?.Name));
     return {
-      schema: file.api.GetModelSchema(file.model),
+      schema: this.file.api.GetModelSchema(this.file.model),
       surfaces: this.surfaces,
       materials: this.materials,
       spaces: this.spaces,
       fixtures: this.fixtures,
-      north: northDegrees(file),
+      north: northDegrees(this.file),
       warnings: this.warnings.list(),
       complaints: this.heard.list(),
       left_out: this.leftOut.list(),
@@ -119,6 +119,7 @@ class Reader {
 
     writeRecord(kTag.progress, utf8(name));
     const meshes = shape ? await this.meshesOf(id, name) : [];
+    if (!meshes) return;
     if (isSpace) {
       this.addSpace(line, name, meshes);
       return;
@@ -132,6 +133,7 @@ class Reader {
       for (const part of parts) this.writePart(part, surface, id, type);
     } else if (shape && sources.length === 0 && this.hasSurfaces(shape)) {
       this.warnings.add('has a shape that could not be read', name);
+      this.leftOut.add('shape that could not be read', name);
     }
     if (isFixture || sources.length > 0 || mayBe) {
       const names = [...new Set([name, textOf(line.ObjectType), textOf(typeLine?.Name)].filter((n) => n))];
@@ -196,11 +198,12 @@ class Reader {
         }
       });
     } catch (error) {
-      this.warnings.add('has a shape that web-ifc fails on', name);
+      this.warnings.add('has a shape that ends web-ifc', name);
+      this.leftOut.add('shape that ends web-ifc', name);
       if (++this.restarts > kMostRestarts) refuse(`has more than ${kMostRestarts} shapes that web-ifc fails on, the last in '${name}'; try to export it again, as glTF or OBJ`);
       await this.open();  // the old machine may be in any state
       this.lights.file = this.styles.file = this.buildingMaterials.file = this.file;
-      return [];
+      return undefined;
     }
     return meshes;
   }
@@ -303,8 +306,9 @@ class Reader {
   /** Index of the material of a part. */
   material({ look, material, glass, geometry }, id, type) {
     const own = (word) => [id, material?.id, type].map((of) => this.optics.get(of)?.[word]).find((v) => v !== undefined);
+    const itsOwn = this.optics.get(id)?.reflectance === undefined ? '' : this.current.name;
     const of = {
-      name: look?.name || material?.name || (look?.colour ? `colour ${look.colour.map((v) => Math.round(255 * v)).join(' ')}` : ''),
+      name: look?.name || material?.name || (glass !== undefined && !look?.transparency ? 'glass' : '') || itsOwn || (look?.colour ? `colour ${look.colour.map((v) => Math.round(255 * v)).join(' ')}` : ''),
       colour: look?.colour,
       transparency: look?.transparency ?? 0,
       reflectance: own('reflectance') ?? look?.reflectance,

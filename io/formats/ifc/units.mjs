@@ -28,7 +28,8 @@ export function metresPerUnit(file) {
 export function northDegrees(file) {
   for (const id of file.all('IfcGeometricRepresentationContext', true)) {
     const ratios = file.get(idOf(file.get(id)?.TrueNorth))?.DirectionRatios?.map(numberOf);
-    if (ratios?.length >= 2 && Math.hypot(ratios[0], ratios[1]) > 1e-9) return (Math.atan2(ratios[0], ratios[1]) * 180) / Math.PI;
+    if (ratios?.length >= 2 && Math.hypot(ratios[0], ratios[1]) > 1e-9)
+      return Math.round(((Math.atan2(ratios[0], ratios[1]) * 180) / Math.PI) * 1e6) / 1e6;
   }
   return undefined;
 }

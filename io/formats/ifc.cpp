@@ -73,9 +73,9 @@ Model read_ifc(const std::filesystem::path& file, const ShouldStop& should_stop)
   const std::string program = node(name);
   const std::string script = reader_script(name).string();
   const std::uint64_t bytes = std::filesystem::file_size(file);
-  // An honest megabyte takes well under a second and some 40 MB; the rest is for slow machines.
+  // An honest megabyte takes well under a second and some 10 MB; the rest is for slow machines.
   const std::chrono::seconds seconds(30 + 5 * (bytes >> 20));
-  const std::uint64_t memory = (1ull << 30) + 200 * bytes;
+  const std::uint64_t memory = (1ull << 30) + 60 * bytes;
   const ProgramLimits limits{.cpu_time = seconds, .time = 4 * seconds, .memory_bytes = memory};
   const std::string heap = text("--max-old-space-size=", (memory >> 20) / 2);
   std::string answer;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -417,15 +417,17 @@ TEST_F(ReadIfc, TheLargeBuildingIsTheSameAsIfcAndAsObj) {
   EXPECT_GT(ifc.surfaces.size(), 100u);
   EXPECT_EQ(material(ifc, "Glass").kind, MaterialKind::glass);
   EXPECT_NEAR(material(ifc, "Default Roof").reflectance[1], 0.498, 1e-3);
-  const auto area = [](const Scene& scene, bool glass) {
+  const auto area = [](const Scene& scene, const std::function<bool(const Material&)>& counts) {
     double sum = 0;
     for (std::size_t f = 0; f < scene.polygons.face_count(); ++f)
-      if (!glass || scene.materials[scene.polygons.material[f]].kind == MaterialKind::glass)
-        sum += length(area_vector(scene, f)) / 2;
+      if (counts(scene.materials[scene.polygons.material[f]])) sum += length(area_vector(scene, f)) / 2;
     return sum;
   };
-  EXPECT_NEAR(area(ifc, true) / area(obj, true), 1, 1e-5);
-  EXPECT_NEAR(area(ifc, false) / area(obj, false), 1, 0.01);
+  const auto is_glass = [](const Material& m) { return m.kind == MaterialKind::glass; };
+  EXPECT_NEAR(area(ifc, is_glass) / area(obj, is_glass), 1, 1e-5);
+  // The twin was made by Assimp, which fills the frames of sashes and leaves out 5.6 m2 of wall tops.
+  const auto is_no_sash = [](const Material& m) { return m.name != "Sash"; };
+  EXPECT_NEAR(area(ifc, is_no_sash), area(obj, is_no_sash) + 5.64, 0.5);
   EXPECT_EQ(ifc.spaces.size(), 8u);
 }
 

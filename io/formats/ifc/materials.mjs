@@ -9,6 +9,12 @@ export class Materials {
     this.file = file;
     this.ofObject = file.relation('IfcRelAssociatesMaterial', 'RelatingMaterial', 'RelatedObjects');
     this.parts = new Map();
+    this.aspectOf = new Map();  // id of a representation item -> what part of its product it is: "Glazing"
+    for (const id of file.all('IfcShapeAspect', true)) {
+      const aspect = file.get(id);
+      for (const representation of idsOf(aspect?.ShapeRepresentations))
+        for (const item of idsOf(file.get(representation)?.Items)) this.aspectOf.set(item, textOf(aspect.Name));
+    }
   }
 
   /** [{ id, name, part }] of a material or a set of them; `part` is what a constituent is for ("Glazing"). */
@@ -57,8 +63,14 @@ export class Materials {
     return parts;
   }
 
-  /** Of a product, else of its type. */
-  of(product, type) {
+  /** Of a product, else of its type; where an item is a named part of it, that part's material comes first. */
+  of(product, type, item) {
+    const aspect = this.aspectOf.get(item);
+    const rank = (part) => (aspect && part.part === aspect ? 0 : 1);
+    return [...this.ofAll(product, type)].sort((a, b) => rank(a) - rank(b));
+  }
+
+  ofAll(product, type) {
     for (const object of [product, type])
       for (const id of this.ofObject.get(object) ?? []) {
         const parts = this.partsOf(id);

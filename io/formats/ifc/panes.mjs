@@ -8,6 +8,7 @@ const kSheet = 0.9;        // transmittance where nothing says it: clear glass; 
 const kGlassWord = /glas|glaz|vitr|verre|cristal|vidrio|vidro|vetro|szk[lł]|стекл|ガラス|玻璃/i;
 const kNoGlass = /fib(?:re|er)|faser|wool|wolle|laine|foam|bead|gasket|glasur|plaster|metal|alumini?um|steel|wood|timber|frame|brick|tile/i;
 const saysGlass = (name) => kGlassWord.test(name) && !kNoGlass.test(name);
+const isGlass = (material) => saysGlass(material.name) || saysGlass(material.part);
 
 export const isGlazed = (className) => /^Ifc(?:Window|Door|Plate|CurtainWall)/.test(className);
 
@@ -34,7 +35,7 @@ export function findPanes(className, parts) {
     if (part.look?.transparency >= 0.05) take(part, part.look.transparency);
   if (panes > 0) return { panes, assumed };
   for (const part of parts)
-    if (saysGlass(part.look?.name ?? '') || (!part.look && saysGlass(part.material?.name ?? part.material?.part ?? ''))) {
+    if (part.look ? saysGlass(part.look.name) : part.material && isGlass(part.material)) {
       take(part, kSheet);
       ++assumed;
     }
@@ -44,6 +45,7 @@ export function findPanes(className, parts) {
   const whole = [0, 1, 2].map((k) => Math.max(...parts.map((part) => part.upper[k])) - Math.min(...parts.map((part) => part.lower[k])));
   for (const part of parts)
     if ((oneLook || !part.look) && isSheet(part, whole)) {
+      part.material = part.materials.find(isGlass) ?? part.material;
       take(part, kSheet);
       ++assumed;
     }

@@ -130,6 +130,9 @@ class Reader {
     if (parts.length > 0) {
       this.surfaces.push(name);
       this.findGlass(className, name, id, parts);
+      const isGuess = (part) => !part.look && part.glass === undefined && !this.buildingMaterials.aspectOf.has(part.geometry);
+      if (parts.some((part) => isGuess(part) && new Set(part.materials.map((m) => m.name)).size > 1))
+        this.warnings.add('has several materials and no style; the first of them is taken for it', name);
       for (const part of parts) this.writePart(part, surface, id, type);
     } else if (shape && sources.length === 0 && this.hasSurfaces(shape)) {
       this.warnings.add('has a shape that could not be read', name);
@@ -211,7 +214,7 @@ class Reader {
   /** Look, material and size of a mesh, in the product's own frame. */
   describe(mesh, id, type, shape, place) {
     const looks = this.looksOfProduct(shape);
-    const materials = this.buildingMaterials.of(id, type);
+    const materials = this.buildingMaterials.of(id, type, mesh.geometry);
     let look = looks.get(mesh.geometry);
     if (!look && !looks.has(mesh.geometry)) {
       // Cut by openings, the parts of a product come as one: what is nearest to the colour they have been given.
@@ -231,8 +234,6 @@ class Reader {
       }
     if (!look && !isWhite(mesh.colour))
       look = { name: '', colour: [mesh.colour.x, mesh.colour.y, mesh.colour.z], transparency: 1 - mesh.colour.w };
-    if (!look && new Set(materials.map((m) => m.name)).size > 1)
-      this.warnings.add('has several materials and no style; the first material is taken for all of it', this.current.name);
     return { ...mesh, look, material, materials, ...this.measure(mesh, place) };
   }
 

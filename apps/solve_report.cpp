@@ -150,6 +150,8 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.daylight = scene.daylight;
   r.luminaires = luminaires_by_file(scene.lights);
   if (s.sensor_E.size() > 0) r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));
+  r.spaces = figures_of(scene.spaces);
+  r.not_read = scene.not_read;
   r.left_out = what_was_left_out(scene, s);
 }
 

@@ -17,6 +17,9 @@ endforeach()
 install(TARGETS ${libraries} clerestory_warnings EXPORT ClerestoryTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS clerestory_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS clerestory_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clerestory)
+# What reads IFC, with the licence of web-ifc; nothing when it was not there to build with.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clerestory/ifc
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/clerestory OPTIONAL)
 
 # The doors, not what is behind them: these headers need the standard library only.
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/clerestory)

@@ -35,7 +35,7 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
   scene.files.push_back(file);
   take_texture_means(model, [](const std::string&) { return false; });
   ModelsInScene none;
-  place_model(scene, none, model, file, placement, [](Material&) { return false; });
+  place_model(scene, none, model, file, placement);
   return scene;
 }
 

@@ -97,6 +97,15 @@ Json json_of(const SensorSummary& s) {
   return json;
 }
 
+Json json_of(const RunReport::Space& s) {
+  Json json = {{"name", s.name}};
+  if (!s.long_name.empty()) json["long_name"] = s.long_name;
+  if (s.volume > 0) json["area"] = s.area, json["height"] = s.height, json["volume"] = s.volume;
+  return json;
+}
+
+Json json_of(const NotRead& n) { return {{"what", n.what}, {"count", n.count}, {"first", n.first}}; }
+
 template <class Row>
 Json array_of(const std::vector<Row>& rows) {
   Json json = Json::array();
@@ -136,6 +145,12 @@ RunReport new_report(const std::string& input) {
   report.version = kVersion;
   report.input = input;
   return report;
+}
+
+std::vector<RunReport::Space> figures_of(const std::vector<NamedSpace>& spaces) {
+  std::vector<RunReport::Space> figures;
+  for (const NamedSpace& s : spaces) figures.push_back({s.name, s.long_name, floor_area(s), height(s), volume(s)});
+  return figures;
 }
 
 std::string stop_name(StopReason stop) {
@@ -190,6 +205,8 @@ void write_report(AtomicFile& file, const RunReport& report) {
   if (!report.error) json["error"] = nullptr;  // asked for by readers even when there was no time to measure
   if (!report.luminaires.empty()) json["luminaires"] = array_of(report.luminaires);
   if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
+  if (!report.spaces.empty()) json["spaces"] = array_of(report.spaces);
+  if (!report.not_read.empty()) json["not_read"] = array_of(report.not_read);
   json["log"] = report.log;
   json["warnings"] = report.warnings;
   json["left_out"] = report.left_out;

@@ -57,6 +57,12 @@ struct RunReport {
     double lamp_flux = 0;      ///< of one's bare lamps, as its file says [lm]; 0: it does not
   };
   std::vector<Luminaires> luminaires;
+  struct Space {
+    std::string name, long_name;
+    double area = 0, height = 0, volume = 0;  ///< [m2], [m], [m3]; 0 where the model gives no volume
+  };
+  std::vector<Space> spaces;       ///< rooms that the models name
+  std::vector<NotRead> not_read;   ///< what the models hold and their readers did not use
   std::vector<SensorSummary> sensors;  ///< one a set
   StopReason stop = StopReason::converged;
   MeshReport repairs;
@@ -64,6 +70,9 @@ struct RunReport {
   std::vector<std::string> warnings;
   std::vector<std::string> left_out;  ///< what the scene did not need, so was not computed
 };
+
+/// Area, height and volume of each.
+std::vector<RunReport::Space> figures_of(const std::vector<NamedSpace>& spaces);
 
 /// A report to fill, with the version of this library.
 RunReport new_report(const std::string& input);

@@ -23,6 +23,7 @@ std::vector<fs::path> own_files(const std::vector<std::string>& extensions) {
   std::vector<fs::path> files;
   const auto take = [&](const fs::directory_entry& entry) {
     const std::string extension = entry.path().extension();
+    if (entry.path().string().find("node_modules") != std::string::npos) return;  // what npm brings is not ours
     if (entry.is_regular_file() && std::find(extensions.begin(), extensions.end(), extension) != extensions.end())
       files.push_back(fs::relative(entry.path(), kRoot));
   };

@@ -1,5 +1,7 @@
 // clerestory check: what is in a model, what is wrong with it, and what a solve would make of it. Nothing is solved.
 
+#include <cmath>
+
 #include <CLI/CLI.hpp>
 
 #include "apps/commands/commands.h"
@@ -92,6 +94,21 @@ void say_lights(const Scene& scene, Console& console) {
     console.warn(scene.file + ": there is no light; a solve would be refused. Add --sky NAME:LUX.");
 }
 
+void say_spaces(const std::vector<RunReport::Space>& spaces, Console& console) {
+  for (const RunReport::Space& s : spaces)
+    console.say("  space    '" + s.name + "'" + (s.long_name.empty() ? "" : " (" + s.long_name + ")") + ": " +
+                (s.volume > 0 ? rounded(s.area) + " m2, " + rounded(s.height) + " m high, " + rounded(s.volume) + " m3"
+                              : "without a volume"));
+}
+
+void say_not_read(const Scene& scene, Console& console) {
+  for (const NotRead& n : scene.not_read)
+    console.say("  not read " + std::to_string(n.count) + " x " + n.what +
+                (n.first.empty() ? "" : ", the first '" + n.first + "'"));
+  if (scene.model_north_deg && std::abs(*scene.model_north_deg) > 0.01)
+    console.say("  north    " + rounded(*scene.model_north_deg) + " degrees clockwise from +y, by the model");
+}
+
 ExitCode check_command(const Arguments& arguments, Console& console) {
   const Scene scene = read_scene(arguments.input, arguments.read);
   console.has_read(scene.files);
@@ -115,6 +132,10 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   say_mesh(repairs, console);
   say_materials(scene, console);
   say_lights(scene, console);
+  report.spaces = figures_of(scene.spaces);
+  report.not_read = scene.not_read;
+  say_spaces(report.spaces, console);
+  say_not_read(scene, console);
 
   for (const std::string& hint : hints_about_panels(prepared->problem())) console.warn(scene.file + ": " + hint);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include <assimp/Importer.hpp>
@@ -12,7 +11,6 @@
 
 #include "io/find_file.h"
 #include "io/formats/add_mesh.h"
-#include "io/formats/ifc_unit.h"
 #include "io/formats/model_bytes.h"
 #include "io/formats/run_apart.h"
 #include "io/input_file.h"
@@ -52,17 +50,8 @@ Affine without_rounding(Affine a) {
   return a;
 }
 
-/// Assimp turns the z-up metres of an IFC site into y-up ones by a float matrix whose cosine of 90 degrees is -4e-8:
-/// metres, for a site that is georeferenced. This turns them back by the same angle.
-Affine back_to_z_up() {
-  const double c = std::cos(static_cast<float>(-std::numbers::pi / 2));
-  return {{Vec3{1, 0, 0}, Vec3{0, c, -1}, Vec3{0, 1, c}}, {}};
-}
-
-/// Names that Assimp makes up are no names; parts of an IFC product are known by the product.
-bool is_made_up(const std::string& name) {
-  return name.empty() || name[0] == '$' || name[0] == '<' || name == "IfcMappedItem";
-}
+/// Names that Assimp makes up are no names.
+bool is_made_up(const std::string& name) { return name.empty() || name[0] == '$' || name[0] == '<'; }
 
 double colour_part(float x) { return std::isfinite(x) && x > 0 ? std::min(double{x}, kLargestCoordinate) : 0.0; }
 Spectrum to_spectrum(const aiColor3D& c) { return {colour_part(c.r), colour_part(c.g), colour_part(c.b)}; }
@@ -92,8 +81,7 @@ ModelMaterial to_material(const aiMaterial& from) {
   to.material.name = str(name);
   if (to.material.name.empty()) to.material.name = kDefaultMaterial;
   aiColor3D colour;
-  // "<IFCDefault>" stands for what has no style; its grey is Assimp's, not the model's.
-  to.described = to.material.name != "<IFCDefault>" && from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS;
+  to.described = from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS;
   if (!to.described) return to;
   to.material.reflectance = to_spectrum(colour);
   if (from.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS) {
@@ -144,12 +132,9 @@ double number_of(const aiMetadata* meta, const char* key, double otherwise) {
 }
 
 /// What the format says of unit and axes.
-void set_frame(Model& model, const aiScene& scene, const std::filesystem::path& file, const std::string& extension) {
-  // The unit and axes of the file are in the transform of Assimp's root node, which makes them y-up metres.
-  if (extension == ".ifc") {
-    model.metres_per_unit = converted_ifc_unit(read_input_file(file, kMaxBytes)).value_or(1.0);
-    model.up = Up::z;  // turned back by back_to_z_up
-  } else if (extension == ".dae") {
+void set_frame(Model& model, const aiScene& scene, const std::string& extension) {
+  // The unit and axes of a DAE file are in the transform of Assimp's root node, which makes them y-up metres.
+  if (extension == ".dae") {
     model.metres_per_unit = 1.0;
     model.up = Up::y;
   } else if (extension == ".fbx") {
@@ -166,7 +151,7 @@ void set_frame(Model& model, const aiScene& scene, const std::filesystem::path& 
 Model to_model(const aiScene& scene, const std::filesystem::path& file, const std::string& extension) {
   const std::string name = short_name(file);
   Model model;
-  set_frame(model, scene, file, extension);
+  set_frame(model, scene, extension);
   for (unsigned m = 0; m < scene.mNumMaterials; ++m) {
     model.materials.push_back(to_material(*scene.mMaterials[m]));
     if (auto texture = texture_of(*scene.mMaterials[m], scene, file.parent_path())) {
@@ -197,8 +182,7 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   UniqueNames names;
   std::vector<Owner> owners{{"", {}}};
   std::vector<Open> open;
-  const Affine outermost = extension == ".ifc" ? back_to_z_up() : Affine{};
-  if (scene.mRootNode) open.push_back({scene.mRootNode, outermost, 0});
+  if (scene.mRootNode) open.push_back({scene.mRootNode, Affine{}, 0});
   std::size_t faces = 0;
   while (!open.empty()) {
     Open at = open.back();
@@ -260,27 +244,11 @@ Model import(const std::filesystem::path& file, const std::string& extension) {
   return to_model(*scene, file, extension);
 }
 
-/// A STEP file (ISO 10303-21) ends with a line that says so. Assimp reads what is there of a cut one, or ends on it.
-void refuse_cut_off_step(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string head(1024, '\0'), tail(65'536, '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  if (head.find("ISO-10303-21") == head.npos) return;  // something else, of which Assimp says what
-  in.clear();
-  const auto bytes = std::filesystem::file_size(file);
-  in.seekg(static_cast<std::streamoff>(bytes - std::min<std::uintmax_t>(bytes, tail.size())));
-  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
-  if (tail.find("END-ISO-10303-21") != tail.npos) return;
-  throw InputError(
-      text(short_name(file), ": is cut off: its last line END-ISO-10303-21; is missing; copy or export it ", "again"));
-}
-
 }  // namespace
 
 Model read_with_assimp(const std::filesystem::path& file) {
   check_input_file(file, kMaxBytes);
   const std::string extension = to_lower(file.extension().string());
-  if (extension == ".ifc") refuse_cut_off_step(file);
   const std::string name = short_name(file);
   const std::uint64_t bytes = std::filesystem::file_size(file);
   // An honest megabyte takes well under a second and some 20 MB; the rest is for slow machines.

@@ -5,8 +5,7 @@
 
 namespace clerestory {
 
-/// Reads a .dae, .fbx or .ifc file through Assimp in a child process: of damaged IFC files one in five crashes its
-/// importer, and some DAE and FBX files do.
+/// Reads a .dae or .fbx file through Assimp in a child process: some damaged ones crash its importer.
 ///
 /// throws  InputError, also for whatever goes wrong inside Assimp.
 Model read_with_assimp(const std::filesystem::path& file);

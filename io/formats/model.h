@@ -30,14 +30,29 @@ struct ModelMaterial {
   bool unitless_glow = false;  ///< its emission had no unit and was taken as radiance [W/(m2 sr)]
 };
 
+/// A product that may be a lamp: scene files name photometric files for such.
+struct ModelFixture {
+  std::vector<std::string> names;  ///< its own, its type's
+  bool is_fixture = true;          ///< false: by its class it may be anything
+  Vec3 position;                   ///< of the photometric centre
+  Vec3 x{1, 0, 0}, z{0, 0, 1};     ///< its own axes, unit; it shines along -z
+  std::optional<SurfaceId> body;   ///< its housing, which is no surface any more once its light is known
+  std::vector<Luminaire> lights;   ///< what the file itself says of its light
+  std::vector<std::string> mute;   ///< light sources of which the file does not say how much they give: "positional"
+};
+
 struct Model {
   PolygonSoup polygons;
   std::vector<ModelMaterial> materials;
   std::vector<ModelTexture> textures;
   std::vector<std::string> surfaces;
   LightSpec lights;
+  std::vector<NamedSpace> spaces;
+  std::vector<ModelFixture> fixtures;
   std::vector<std::string> warnings;         ///< without the file's name
+  std::vector<NotRead> not_read;             ///< what the reader did not use
   std::vector<std::filesystem::path> files;  ///< other files that it names, read or not: materials, buffers, textures
+  std::optional<double> north_deg;           ///< true north, from +y clockwise seen from above, when the file says it
   std::optional<double> metres_per_unit;     ///< when the file says its unit
   std::optional<Up> up;                      ///< when the file says its axes
 };
@@ -58,6 +73,7 @@ Model read_gltf(const std::filesystem::path& file);  ///< .gltf and .glb
 Model read_ply(const std::filesystem::path& file);
 Model read_stl(const std::filesystem::path& file);
 Model read_off(const std::filesystem::path& file);
+Model read_ifc(const std::filesystem::path& file);
 
 /// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`, what they show to
 /// `textures`, files that it names to `named`.

@@ -47,7 +47,30 @@ class LuminaireReader {
     }
   }
 
+  FixtureRule read_rule(const std::string& pattern, const JsonObject& object) {
+    FixtureRule rule{pattern, object.word("group").value_or(""), {}, false, 0};
+    object.at("file");
+    rule.luminaire.web = web_of(object);
+    const double rotation = object.number("rotation", kRotation).value_or(0);
+    rule.luminaire.axes = aimed(rule.luminaire.web->type, {0, 0, -1}, rotation);
+    rule.luminaire.scale = Spectrum(1 / kWhiteEfficacy);
+    if (const auto power = read_flux(object)) {
+      rule.luminaire.scale = scale_to(*power, object, *rule.luminaire.web);
+      rule.flux_is_given = true;
+    }
+    rule.luminaire.scale *= read_dimming(object);
+    return rule;
+  }
+
  private:
+  static constexpr Range kRotation{.low = -3600, .high = 3600, .advice = "it is in degrees about aim"};
+
+  static Spectrum scale_to(const Spectrum& power, const JsonObject& object, const PhotometricWeb& web) {
+    if (web.flux > 0) return power / web.flux;
+    throw InputError(text(object.place("file"), " '", web.name, "' gives no light; its flux cannot be scaled to ",
+                          "the one the scene asks for"));
+  }
+
   /// In watts, or nothing; before dimming.
   std::optional<Spectrum> read_flux(const JsonObject& object) {
     const auto flux = object.colour("luminous_flux", kFlux);
@@ -87,16 +110,11 @@ class LuminaireReader {
     const PhotometricWeb& web = *luminaire.web;
     const Vec3 upright = beam_axis(web.type);
     const Vec3 aim = object.unit_vector("aim").value_or(upright);
-    const double rotation =
-        object.number("rotation", {.low = -3600, .high = 3600, .advice = "it is in degrees about aim"}).value_or(0);
+    const double rotation = object.number("rotation", kRotation).value_or(0);
     luminaire.axes = aimed(web.type, aim, rotation);
     luminaire.scale = Spectrum(1 / kWhiteEfficacy);
     if (const auto power = read_flux(object)) {
-      if (!(web.flux > 0)) {
-        throw InputError(text(object.place("file"), " '", web.name, "' gives no light; its flux cannot be scaled to ",
-                              "the one the scene asks for"));
-      }
-      luminaire.scale = *power / web.flux;
+      luminaire.scale = scale_to(*power, object, web);
     } else {
       const double tilt = std::acos(std::clamp(dot(aim, upright), -1.0, 1.0)) * 180 / std::numbers::pi;
       luminaire.scale *= tilt_factor(web, tilt);
@@ -138,6 +156,43 @@ void read_luminaire_entries(const JsonObject& root, const std::string& file_name
                              "maintenance_factor", "group"});
     reader.read(object, n, scene.lights);
   }
+}
+
+std::vector<FixtureRule> read_fixture_rules(const JsonObject& root, const std::string& file_name,
+                                            const std::filesystem::path& folder, ChannelCount& channels,
+                                            std::vector<std::string>& warnings) {
+  std::vector<FixtureRule> rules;
+  if (!root.has("fixtures")) return rules;
+  const Json& entries = root.at("fixtures");
+  if (!entries.is_object()) refuse_type(root.place("fixtures"), "an object of names and photometric files", entries);
+  LuminaireReader reader(folder, channels, warnings);
+  for (const auto& [pattern, value] : entries.items()) {
+    const std::string place = text(file_name, ": fixtures '", quotable(pattern), "'");
+    if (!value.is_string() && !value.is_object()) refuse_type(place, "the name of an .ies or .ldt file", value);
+    const Json entry = value.is_string() ? Json{{"file", value}} : value;
+    const JsonObject object(entry, place,
+                            {"file", "rotation", "luminous_flux", "power", "dimming", "maintenance_factor", "group"});
+    rules.push_back(reader.read_rule(pattern, object));
+  }
+  return rules;
+}
+
+std::optional<Luminaire> apply_rules(std::vector<FixtureRule>& rules, const ModelFixture& fixture) {
+  for (FixtureRule& rule : rules) {
+    const auto is_match = [&](const std::string& name) { return matches(rule.pattern, name); };
+    if (std::ranges::none_of(fixture.names, is_match)) continue;
+    ++rule.used;
+    WebLuminaire luminaire = rule.luminaire;
+    const Vec3 y = cross(fixture.z, fixture.x);
+    for (Vec3* axis : {&luminaire.axes.x, &luminaire.axes.y, &luminaire.axes.z})
+      *axis = fixture.x * axis->x + y * axis->y + fixture.z * axis->z;
+    if (!rule.flux_is_given) {
+      const double tilt = std::acos(std::clamp(fixture.z.z, -1.0, 1.0)) * 180 / std::numbers::pi;
+      luminaire.scale *= tilt_factor(*luminaire.web, tilt);
+    }
+    return Luminaire{fixture.names.front(), fixture.position, rule.group, luminaire};
+  }
+  return std::nullopt;
 }
 
 }  // namespace clerestory

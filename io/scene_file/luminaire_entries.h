@@ -2,8 +2,10 @@
 // The "luminaires" of a scene file.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "io/formats/model.h"
 #include "io/scene_file/json_object.h"
 #include "io/scene_file/material_rules.h"
 #include "solver/model/scene.h"
@@ -16,5 +18,21 @@ namespace clerestory {
 /// throws  InputError.
 void read_luminaire_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
                             ChannelCount& channels, Scene& scene);
+
+/// What luminaire a lamp is that a model places: of "fixtures", patterns of its name and its type's, first match wins.
+struct FixtureRule {
+  std::string pattern, group;
+  WebLuminaire luminaire;    ///< axes as it shines along the fixture's own -z
+  bool flux_is_given = false;
+  std::size_t used = 0;
+};
+
+/// throws  InputError.
+std::vector<FixtureRule> read_fixture_rules(const JsonObject& root, const std::string& file_name,
+                                            const std::filesystem::path& folder, ChannelCount& channels,
+                                            std::vector<std::string>& warnings);
+
+/// The luminaire of the first rule that matches one of the fixture's names; nothing when none does.
+std::optional<Luminaire> apply_rules(std::vector<FixtureRule>& rules, const ModelFixture& fixture);
 
 }  // namespace clerestory

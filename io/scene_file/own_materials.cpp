@@ -12,6 +12,7 @@ constexpr std::size_t kShown = 6;
 }  // namespace
 
 void NameList::add(const std::string& name, const std::string& remark) {
+  if (count_ == 0) first_ = name;
   if (++count_ > kShown) return;
   list_ += (list_.empty() ? "'" : ", '") + quotable(name) + "'" + (remark.empty() ? "" : " " + remark);
 }

@@ -15,10 +15,12 @@ class NameList {
   /// remark  stands behind the name.
   void add(const std::string& name, const std::string& remark = "");
   bool empty() const { return count_ == 0; }
+  std::size_t count() const { return count_; }
+  const std::string& first() const { return first_; }
   std::string str() const;
 
  private:
-  std::string list_;
+  std::string list_, first_;
   std::size_t count_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 
 #include "io/affine.h"
 #include "io/input_file.h"
@@ -33,9 +34,11 @@ std::string usable_name(const std::string& name) { return quotable(name, 1000); 
 /// For each material of the model its id in the scene; one that is there already, the same in all it says, is shared.
 /// Materials and surfaces that no face carries are left out.
 std::vector<MaterialId> add_materials(Scene& scene, ModelsInScene& before, const Model& model,
-                                      const std::filesystem::path& file, const MaterialOverride& by_scene_file) {
+                                      const std::filesystem::path& file, const std::vector<bool>& hidden,
+                                      const MaterialOverride& by_scene_file) {
   std::vector<bool> carried(model.materials.size(), false);
-  for (const MaterialId m : model.polygons.material) carried[m] = true;
+  for (std::size_t f = 0; f < model.polygons.face_count(); ++f)
+    if (!hidden[model.polygons.surface[f]]) carried[model.polygons.material[f]] = true;
   const std::size_t of_others = scene.materials.size();
   const std::string stem = clean_text(file.stem().string());
   OwnMaterials own;
@@ -45,7 +48,7 @@ std::vector<MaterialId> add_materials(Scene& scene, ModelsInScene& before, const
     ModelMaterial described = model.materials[m];
     described.material.name = usable_name(described.material.name);
     Material material = described.material;
-    if (!by_scene_file(material)) material = own.settle(described);
+    if (!by_scene_file || !by_scene_file(material)) material = own.settle(described);
     const auto same = before.material.find(material.name);
     if (same != before.material.end() && same->second < of_others && scene.materials[same->second] == material) {
       id[m] = same->second;
@@ -60,9 +63,10 @@ std::vector<MaterialId> add_materials(Scene& scene, ModelsInScene& before, const
   return id;
 }
 
-std::vector<SurfaceId> add_surfaces(Scene& scene, NamesInUse& names, const Model& model, const std::string& stem) {
+std::vector<SurfaceId> add_surfaces(Scene& scene, NamesInUse& names, const Model& model,
+                                    const std::vector<bool>& hidden, const std::string& stem) {
   std::vector<bool> carried(model.surfaces.size(), false);
-  for (const SurfaceId s : model.polygons.surface) carried[s] = true;
+  for (const SurfaceId s : model.polygons.surface) carried[s] = !hidden[s];
   std::vector<SurfaceId> id(model.surfaces.size());
   for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
     if (!carried[s]) continue;
@@ -92,16 +96,69 @@ void turn(WebLuminaire& luminaire, const Affine& place) {
   luminaire.axes.y = cross(luminaire.axes.z, luminaire.axes.x);
 }
 
+void add_luminaire(Scene& scene, Luminaire luminaire, const Affine& place, const std::string& file) {
+  luminaire.position = light_position(place.point(luminaire.position), luminaire.name, file);
+  std::visit([&](auto& kind) { turn(kind, place); }, luminaire.kind);
+  scene.lights.luminaires.push_back(std::move(luminaire));
+}
+
 void add_lights(Scene& scene, const LightSpec& lights, const Affine& place, const std::string& file) {
-  for (Luminaire luminaire : lights.luminaires) {
-    luminaire.position = light_position(place.point(luminaire.position), luminaire.name, file);
-    std::visit([&](auto& kind) { turn(kind, place); }, luminaire.kind);
-    scene.lights.luminaires.push_back(std::move(luminaire));
-  }
+  for (const Luminaire& luminaire : lights.luminaires) add_luminaire(scene, luminaire, place, file);
   for (Sun sun : lights.suns) {
     sun.direction = normalized(place.direction(sun.direction));
     scene.lights.suns.push_back(sun);
   }
+}
+
+/// Adds the light of fixtures. Returns which surfaces of the model are housings of those.
+std::vector<bool> add_fixtures(Scene& scene, const Model& model, const Affine& place, const std::string& file,
+                               const FixtureLight& by_fixture) {
+  std::vector<bool> housing(model.surfaces.size(), false);
+  NameList dark, mute;
+  for (const ModelFixture& fixture : model.fixtures) {
+    ModelFixture placed = fixture;
+    placed.position = light_position(place.point(fixture.position), fixture.names.front(), file);
+    placed.z = normalized(place.direction(fixture.z));
+    const Vec3 x = place.direction(fixture.x);
+    placed.x = normalized(x - placed.z * dot(x, placed.z));
+    std::size_t lights = 0;
+    if (auto luminaire = by_fixture ? by_fixture(placed) : std::nullopt) {
+      scene.lights.luminaires.push_back(std::move(*luminaire));
+      lights = 1;
+    } else {
+      for (const Luminaire& own : fixture.lights) add_luminaire(scene, own, place, file);
+      lights = fixture.lights.size();
+      for (const std::string& kind : fixture.mute) mute.add(text(fixture.names.front(), " (", kind, ")"));
+      if (lights == 0 && fixture.mute.empty() && fixture.is_fixture) dark.add(fixture.names.front());
+    }
+    if (lights > 0 && fixture.body) housing[*fixture.body] = true;
+  }
+  if (!mute.empty()) {
+    scene.warnings.push_back(text(file, ": light sources without a flux in lumens are left out: ", mute.str(),
+                                  "; name a photometric file for them under \"fixtures\" of a scene file"));
+    scene.not_read.push_back({"light source without a flux", mute.count(), mute.first()});
+  }
+  if (!dark.empty()) {
+    scene.warnings.push_back(text(file, ": nothing says what light these fixtures give, they are left dark: ",
+                                  dark.str(), "; name a photometric file for them under \"fixtures\" of a scene file"));
+    scene.not_read.push_back({"light fixture without photometry", dark.count(), dark.first()});
+  }
+  return housing;
+}
+
+void add_spaces(Scene& scene, NamesInUse& names, const Model& model, const Affine& place, const std::string& stem) {
+  for (NamedSpace space : model.spaces) {
+    space.name = names.take(space.name, stem);
+    for (Vec3& p : space.vertices) p = place.point(p);
+    scene.spaces.push_back(std::move(space));
+  }
+}
+
+void note_north(Scene& scene, const Model& model, const Affine& place) {
+  if (!model.north_deg || scene.model_north_deg) return;
+  constexpr double kDegree = std::numbers::pi / 180;
+  const Vec3 north = place.direction({std::sin(*model.north_deg * kDegree), std::cos(*model.north_deg * kDegree), 0});
+  scene.model_north_deg = std::atan2(north.x, north.y) / kDegree;
 }
 
 void warn_of_size(Scene& scene, ModelsInScene& before, const Vec3& size, bool unit_is_known, const std::string& name) {
@@ -137,7 +194,7 @@ std::string NamesInUse::take(const std::string& name, const std::string& stem) {
 }
 
 void place_model(Scene& scene, ModelsInScene& before, const Model& model, const std::filesystem::path& file,
-                 const Placement& placement, const MaterialOverride& by_scene_file) {
+                 const Placement& placement, const MaterialOverride& by_scene_file, const FixtureLight& by_fixture) {
   const std::string name = short_name(file);
   constexpr std::size_t kShown = 50;
   const std::size_t count = model.warnings.size();
@@ -159,9 +216,13 @@ void place_model(Scene& scene, ModelsInScene& before, const Model& model, const 
   const bool mirrored = place.mirrors();
 
   const std::string stem = clean_text(file.stem().string());
-  const std::vector<MaterialId> material = add_materials(scene, before, model, file, by_scene_file);
-  const std::vector<SurfaceId> surface = add_surfaces(scene, before.surfaces, model, stem);
+  scene.not_read.insert(scene.not_read.end(), model.not_read.begin(), model.not_read.end());
+  const std::vector<bool> housing = add_fixtures(scene, model, place, name, by_fixture);
+  const std::vector<MaterialId> material = add_materials(scene, before, model, file, housing, by_scene_file);
+  const std::vector<SurfaceId> surface = add_surfaces(scene, before.surfaces, model, housing, stem);
   add_lights(scene, model.lights, place, name);
+  add_spaces(scene, before.spaces, model, place, stem);
+  note_north(scene, model, place);
 
   const PolygonSoup& from = model.polygons;
   PolygonSoup& to = scene.polygons;
@@ -179,6 +240,7 @@ void place_model(Scene& scene, ModelsInScene& before, const Model& model, const 
     upper = {std::max(upper.x, q.x), std::max(upper.y, q.y), std::max(upper.z, q.z)};
   }
   for (std::size_t f = 0; f < from.face_count(); ++f) {
+    if (housing[from.surface[f]]) continue;
     const std::uint32_t begin = from.face_begin[f], end = from.face_begin[f + 1];
     for (std::uint32_t c = begin; c < end; ++c) {
       const std::uint32_t vertex = first + from.corner[mirrored ? end - 1 - (c - begin) : c];

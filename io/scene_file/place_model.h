@@ -39,13 +39,21 @@ class NamesInUse {
 /// What the models that a scene has so far have said; one for all of them, so that the thousandth is not compared with
 /// all before it.
 struct ModelsInScene {
-  NamesInUse surfaces, materials;
+  NamesInUse surfaces, materials, spaces;
   std::unordered_map<std::string, MaterialId> material;  ///< by name
   std::unordered_set<std::string> warnings;
 };
 
+/// The luminaire that the scene file names for a fixture, its position, axes and names in the scene's frame; nothing
+/// when it names none.
+using FixtureLight = std::function<std::optional<Luminaire>(const ModelFixture&)>;
+
+/// A fixture becomes the luminaire that by_fixture names for it, else those that the model itself describes, and its
+/// housing is left out: photometry is of the whole luminaire. What stays without light keeps its surface, and is said.
+///
 /// throws  InputError naming the surface whose coordinates leave the representable range.
 void place_model(Scene& scene, ModelsInScene& before, const Model& model, const std::filesystem::path& file,
-                 const Placement& placement, const MaterialOverride& by_scene_file);
+                 const Placement& placement, const MaterialOverride& by_scene_file = {},
+                 const FixtureLight& by_fixture = {});
 
 }  // namespace clerestory

@@ -49,7 +49,7 @@ std::array<double, 16> read_transform(const JsonObject& object) {
 }
 
 void read_geometry(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                   std::vector<MaterialRule>& rules, Scene& scene) {
+                   std::vector<MaterialRule>& rules, std::vector<FixtureRule>& fixtures, Scene& scene) {
   const Json& entries = as_array(root.at("geometry"), root.place("geometry"), "models");
   if (entries.empty())
     throw InputError(text(root.place("geometry"), " is empty; name a model: [{ \"file\": \"room.obj\" }]"));
@@ -85,12 +85,15 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
       });
     } else {
       model->second.warnings.clear();  // said already
+      model->second.not_read.clear();
     }
     if (scene.polygons.face_count() + model->second.polygons.face_count() > kMaxFaces) {
       throw InputError(text(object.where(), ": more than ", kMaxFaces, " faces in one scene"));
     }
-    place_model(scene, placed, model->second, model_file, placement,
-                [&](Material& material) { return apply_rules(rules, material); });
+    place_model(
+        scene, placed, model->second, model_file, placement,
+        [&](Material& material) { return apply_rules(rules, material); },
+        [&](const ModelFixture& fixture) { return apply_rules(fixtures, fixture); });
   }
 }
 
@@ -147,13 +150,26 @@ void report_rules(const std::vector<MaterialRule>& rules, const std::string& fil
   }
 }
 
+/// A model's north is not taken over in silence, nor forgotten: the sun of a scene depends on it.
+void compare_north(const JsonObject& root, const std::string& file_name, Scene& scene) {
+  if (!scene.model_north_deg || !root.has("location")) return;
+  const Json& location = root.at("location");
+  const double said = location.contains("north") && location["north"].is_number() ? location["north"].get<double>() : 0;
+  const double off = std::remainder(*scene.model_north_deg - said, 360);
+  if (std::abs(off) < 0.1) return;
+  scene.warnings.push_back(text(file_name, ": the model says that north is ", *scene.model_north_deg,
+                                " degrees clockwise from +y, the scene's location says ", said,
+                                "; the scene counts. Write \"north\": ", *scene.model_north_deg, " to follow the model"));
+}
+
 }  // namespace
 
 Scene read_scene_file(const std::filesystem::path& file) {
   const std::string name = short_name(file);
   const Json json = parse_json<Json>(read_input_file(file, kMaxBytes), name);
   const JsonObject root(
-      json, name, {"geometry", "materials", "luminaires", "sky", "sun", "location", "time", "sensors", "solver"}, ": ");
+      json, name,
+      {"geometry", "materials", "fixtures", "luminaires", "sky", "sun", "location", "time", "sensors", "solver"}, ": ");
   Scene scene;
   scene.file = file.string();
   std::set<std::filesystem::path> files{file};
@@ -165,15 +181,23 @@ Scene read_scene_file(const std::filesystem::path& file) {
   // What is quick to check comes first; models may take a while.
   if (root.has("materials")) rules = read_material_rules(root.at("materials"), name, channels, scene.warnings);
   read_luminaire_entries(root, name, folder, channels, scene);
+  std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, channels, scene.warnings);
   scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
     scene.settings = read_settings(JsonObject(
         root.at("solver"), name + ": solver",
         {"method", "accuracy", "oracle", "max_element", "target_error", "time_limit", "memory_limit", "seed"}));
   }
-  if (root.has("sensors")) scene.sensors = read_sensor_entries(root.at("sensors"), name, folder);
-  read_geometry(root, name, folder, rules, scene);
+  SensorEntries sensors;
+  if (root.has("sensors")) sensors = read_sensor_entries(root.at("sensors"), name, folder);
+  read_geometry(root, name, folder, rules, fixtures, scene);
+  scene.sensors = sets_of(std::move(sensors), scene.spaces);
   report_rules(rules, name, scene);
+  for (const FixtureRule& rule : fixtures)
+    if (rule.used == 0)
+      scene.warnings.push_back(
+          text(name, ": fixtures '", quotable(rule.pattern), "' matches no light fixture that a model places"));
+  compare_north(root, name, scene);
   return scene;
 }
 

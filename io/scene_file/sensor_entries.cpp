@@ -5,6 +5,7 @@
 
 #include "io/input_file.h"
 #include "io/read_sensors.h"
+#include "io/scene_file/material_rules.h"
 #include "io/text.h"
 #include "io/unit_vector.h"
 #include "solver/model/error.h"
@@ -109,19 +110,103 @@ void orient(const JsonObject& object, SensorSet& set) {
   }
 }
 
+constexpr double kWorkPlane = 0.8;  // [m] above the floor
+
+/// Points of a grid in one space.
+SensorSet grid_in(const NamedSpace& space, const JsonObject& object, SensorKind kind, std::size_t room_left) {
+  const double height =
+      object.number("height", {.low = 0, .high = 1e6, .advice = "it is in metres above the floor"}).value_or(kWorkPlane);
+  object.at("spacing");
+  const double spacing =
+      *object.number("spacing", {.low = 0, .high = 1e12, .low_allowed = false, .advice = "it is in metres"});
+  const Vec3 normal = object.unit_vector("normal").value_or(kUp);
+  const Vec3 u = wall_direction(space), v = cross(kUp, u);
+  double lower[2] = {1e300, 1e300}, upper[2] = {-1e300, -1e300};
+  for (const std::uint32_t c : space.corner) {
+    const Vec3& p = space.vertices[c];
+    const double along[2] = {dot(p, u), dot(p, v)};
+    for (int k = 0; k < 2; ++k) lower[k] = std::min(lower[k], along[k]), upper[k] = std::max(upper[k], along[k]);
+  }
+  const double cells[2] = {std::max(std::ceil((upper[0] - lower[0]) / spacing - 1e-9), 1.0),
+                           std::max(std::ceil((upper[1] - lower[1]) / spacing - 1e-9), 1.0)};
+  if (!(cells[0] * cells[1] <= static_cast<double>(room_left)))
+    throw InputError(text(object.place("spacing"), " = ", spacing, " makes ", cells[0], " x ", cells[1], " points in '",
+                          quotable(space.name), "'; ", limit(kind)));
+  const double first[2] = {(lower[0] + upper[0] - (cells[0] - 1) * spacing) / 2,
+                           (lower[1] + upper[1] - (cells[1] - 1) * spacing) / 2};
+  SensorSet sensors;
+  for (int j = 0; j < static_cast<int>(cells[1]); ++j)
+    for (int i = 0; i < static_cast<int>(cells[0]); ++i) {
+      const Vec3 p = u * (first[0] + i * spacing) + v * (first[1] + j * spacing);
+      const std::vector<SpaceSpan> spans = spans_at(space, p.x, p.y);
+      if (spans.empty() || !(spans[0].floor + height < spans[0].ceiling)) continue;
+      sensors.points.push_back({{p.x, p.y, spans[0].floor + height}, normal});
+    }
+  return sensors;
+}
+
+std::string names_of(const std::vector<NamedSpace>& spaces) {
+  constexpr std::size_t kShown = 6;
+  std::string names;
+  for (std::size_t s = 0; s < std::min(spaces.size(), kShown); ++s)
+    names += text(s ? ", '" : "'", quotable(spaces[s].name), "'");
+  return spaces.size() > kShown ? text(names, " and ", spaces.size() - kShown, " more") : names;
+}
+
+bool is_named(const NamedSpace& space, const std::string& pattern) {
+  return matches(pattern, space.name) || matches(pattern, space.long_name) ||
+         matches(pattern, space.name + " " + space.long_name);
+}
+
+std::vector<SensorSet> sets_in_spaces(const SpaceGrid& grid, const std::vector<NamedSpace>& spaces, std::size_t total) {
+  const std::string place = grid.object.place("space"), named = text(place, " '", quotable(grid.pattern), "'");
+  if (spaces.empty()) throw InputError(text(named, ": no model has spaces; give origin, u and v instead"));
+  const std::string set_name = grid.object.word("name").value_or("");
+  const std::size_t weight = planes_a_sensor(grid.kind);
+  std::vector<SensorSet> sets;
+  bool any = false;
+  for (const NamedSpace& space : spaces) {
+    if (!is_named(space, grid.pattern)) continue;
+    any = true;
+    if (!space.has_volume()) continue;
+    SensorSet set = grid_in(space, grid.object, grid.kind, (kMaxSensors - total) / weight);
+    if (set.points.empty()) continue;
+    total += set.points.size() * weight;
+    set.name = set_name.empty() ? space.name : set_name + " " + space.name;
+    set.kind = grid.kind;
+    set.threshold = grid.threshold;
+    orient(grid.object, set);
+    sets.push_back(std::move(set));
+  }
+  if (!any) throw InputError(text(named, " matches no space; the models have ", names_of(spaces)));
+  if (sets.empty())
+    throw InputError(text(named, ": no point of the grid is inside; check height and spacing, and whether the spaces ",
+                          "have a volume"));
+  return sets;
+}
+
 }  // namespace
 
-std::vector<SensorSet> read_sensor_entries(const Json& sensors, const std::string& file_name,
-                                           const std::filesystem::path& folder) {
-  std::vector<SensorSet> sets;
-  std::size_t total = 0;
+SensorEntries read_sensor_entries(const Json& sensors, const std::string& file_name,
+                                  const std::filesystem::path& folder) {
+  SensorEntries entries;
+  std::vector<SensorSet>& sets = entries.sets;
+  std::size_t total = 0, n = 0;
   for (const Json& entry : as_array(sensors, file_name + ": sensors", "sensor sets")) {
-    const JsonObject object(entry, text(file_name, ": sensors[", sets.size(), "]"),
-                            {"name", "file", "origin", "u", "v", "spacing", "normal", "kind", "camera", "threshold"});
+    const JsonObject object(entry, text(file_name, ": sensors[", n++, "]"),
+                            {"name", "file", "origin", "u", "v", "spacing", "normal", "kind", "camera", "threshold",
+                             "space", "height"});
     const SensorKind kind = read_kind(object);
     const std::size_t weight = planes_a_sensor(kind);
     const auto threshold =
         object.number("threshold", {.low = 0, .high = kMostLight, .low_allowed = false, .advice = "it is in lux"});
+    if (object.has("space")) {
+      refuse_beside(object, {"file", "origin", "u", "v"}, "\"space\"; keep one of them");
+      object.at("spacing");
+      entries.grids.push_back({sets.size(), object, *object.word("space"), kind, threshold});
+      continue;
+    }
+    refuse_beside(object, {"height"}, "a grid that names no \"space\"");
     if (object.has("file")) {
       refuse_beside(object, {"origin", "u", "v", "spacing", "normal"}, "\"file\"; keep one of them");
       const std::string file = *object.word("file");
@@ -134,12 +219,31 @@ std::vector<SensorSet> read_sensor_entries(const Json& sensors, const std::strin
     set.kind = kind;
     set.threshold = threshold;
     if (const auto name = object.word("name")) set.name = *name;
-    if (set.name.empty()) set.name = text("sensors ", sets.size());
+    if (set.name.empty()) set.name = text("sensors ", n);
     orient(object, set);
     total += set.points.size() * weight;
     if (total > kMaxSensors) throw InputError(text(object.where(), ": too many points; ", limit(kind)));
   }
-  return sets;
+  return entries;
+}
+
+std::vector<SensorSet> sets_of(SensorEntries entries, const std::vector<NamedSpace>& spaces) {
+  std::size_t total = 0;
+  for (const SensorSet& set : entries.sets) total += set.points.size() * planes_a_sensor(set.kind);
+  std::vector<SensorSet> all;
+  std::size_t next = 0;
+  const auto take_sets = [&](std::size_t end) {
+    for (; next < end; ++next) all.push_back(std::move(entries.sets[next]));
+  };
+  for (const SpaceGrid& grid : entries.grids) {
+    take_sets(grid.before);
+    for (SensorSet& set : sets_in_spaces(grid, spaces, total)) {
+      total += set.points.size() * planes_a_sensor(set.kind);
+      all.push_back(std::move(set));
+    }
+  }
+  take_sets(entries.sets.size());
+  return all;
 }
 
 }  // namespace clerestory

@@ -11,6 +11,7 @@
 #include "solver/model/ids.h"
 #include "solver/model/light_spec.h"
 #include "solver/model/material.h"
+#include "solver/model/named_space.h"
 #include "solver/model/sensors.h"
 #include "solver/model/solar_position.h"
 #include "solver/model/vec.h"
@@ -58,6 +59,13 @@ struct Daylight {
   std::optional<Hour> weather;  ///< that sun and sky have their light from
 };
 
+/// Things of one kind in a model that its reader did not use or understand.
+struct NotRead {
+  std::string what;
+  std::size_t count = 0;
+  std::string first;  ///< name of one of them
+};
+
 struct Scene {
   std::string file;
   std::vector<std::filesystem::path> files;  ///< all that it was read from, or that these name
@@ -67,9 +75,12 @@ struct Scene {
   LightSpec lights;
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
   std::vector<SensorSet> sensors;
+  std::vector<NamedSpace> spaces;  ///< rooms that the models name
   SolverSettings settings;
   std::vector<std::string> unused_materials;  ///< material rules of the scene file that matched nothing
   std::vector<std::string> warnings;          ///< what the reader assumed or left out, for people
+  std::vector<NotRead> not_read;              ///< what readers did not use, in full
+  std::optional<double> model_north_deg;      ///< true north as a model says it, clockwise from +y
 
   /// 1 when every reflectance, exitance, transmittance and light is grey, else 3.
   int channels() const;

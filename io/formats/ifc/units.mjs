@@ -1,0 +1,35 @@
+// The file's unit of length, and where its north is.
+
+import { idOf, idsOf, numberOf } from './ifc_file.mjs';
+
+const kPrefix = {
+  EXA: 1e18, PETA: 1e15, TERA: 1e12, GIGA: 1e9, MEGA: 1e6, KILO: 1e3, HECTO: 1e2, DECA: 1e1,
+  DECI: 1e-1, CENTI: 1e-2, MILLI: 1e-3, MICRO: 1e-6, NANO: 1e-9, PICO: 1e-12, FEMTO: 1e-15, ATTO: 1e-18,
+};
+
+function metresOfUnit(file, id, depth = 0) {
+  const unit = file.get(id);
+  if (file.classOf(unit) === 'IfcSIUnit') return kPrefix[unit.Prefix?.value] ?? 1;
+  const measure = file.get(idOf(unit?.ConversionFactor));
+  const value = numberOf(measure?.ValueComponent);
+  return value > 0 && depth < 5 ? value * metresOfUnit(file, idOf(measure.UnitComponent), depth + 1) : 1;
+}
+
+/** Metres of the project's unit of length; 1 where it has none. */
+export function metresPerUnit(file) {
+  const project = file.get(file.all('IfcProject')[0]);
+  const assignment = idOf(project?.UnitsInContext) ?? file.all('IfcUnitAssignment')[0];
+  for (const id of idsOf(file.get(assignment)?.Units))
+    if (file.get(id)?.UnitType?.value === 'LENGTHUNIT') return metresOfUnit(file, id);
+  return 1;
+}
+
+/** Degrees from +y to true north, clockwise seen from above; undefined when the file does not say. */
+export function northDegrees(file) {
+  for (const id of file.all('IfcGeometricRepresentationContext', true)) {
+    const ratios = file.get(idOf(file.get(id)?.TrueNorth))?.DirectionRatios?.map(numberOf);
+    if (ratios?.length >= 2 && Math.hypot(ratios[0], ratios[1]) > 1e-9)
+      return Math.round(((Math.atan2(ratios[0], ratios[1]) * 180) / Math.PI) * 1e6) / 1e6;
+  }
+  return undefined;
+}

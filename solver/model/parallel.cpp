@@ -7,11 +7,26 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#ifdef CLERESTORY_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
 
 namespace clerestory {
 namespace {
 
 std::unique_ptr<tbb::global_control> limit;
+
+/// Work that one thread hands over to others. TBB orders their accesses; the thread sanitizer cannot see into it, and
+/// is told here.
+struct Handover {
+#ifdef CLERESTORY_THREAD_SANITIZER
+  void give() { __tsan_release(this); }
+  void take() { __tsan_acquire(this); }
+#else
+  void give() {}
+  void take() {}
+#endif
+};
 
 }  // namespace
 
@@ -29,9 +44,17 @@ void on_one_thread(const std::function<void()>& body) {
 
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (n == 0) return;
+  Handover start, end;
+  start.give();
   tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) { body(range.begin(), range.end()); },
+      tbb::blocked_range<std::size_t>(0, n, grain),
+      [&](const auto& range) {
+        start.take();
+        body(range.begin(), range.end());
+        end.give();
+      },
       tbb::simple_partitioner());
+  end.take();
 }
 
 Blocks parallel_blocks(std::size_t n, std::size_t block, std::size_t grain, std::string_view stage,

@@ -9,6 +9,9 @@
 #include <tbb/parallel_for.h>
 #ifdef CLERESTORY_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
+
+/// What libraries do that were not compiled for the thread sanitizer does not count.
+extern "C" const char* __tsan_default_options() { return "ignore_noninstrumented_modules=1"; }
 #endif
 
 namespace clerestory {

@@ -24,10 +24,12 @@ done
 
 bash apps/install_dependencies.sh libgtest-dev clang-16 libclang-rt-16-dev
 cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(sed 's/^fuzz_//' build/fuzz/fuzz_targets.txt)
+cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}"
 
 export root=$PWD work=$PWD/build/fuzz/campaign seconds
+# Half as long for each input that is refused: exceptions leave much behind on a stack that is watched after return.
+export ASAN_OPTIONS=detect_stack_use_after_return=0:malloc_context_size=5
 memory=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" clerestory_fuzz.XXXXXX)
 export memory
 trap 'rm -rf "$memory"' EXIT
@@ -53,7 +55,7 @@ export -f fuzz_one
 findings_of() { find "$work/findings/$1" -type f 2>/dev/null | wc -l; }
 sum() { cat "$memory"/*.stats | awk -v column="$1" '{ total += $column } END { print total + 0 }'; }
 
-find "$work/findings" -type f -delete 2>/dev/null || true
+for name in "${targets[@]}"; do rm -rf "${work:?}/findings/$name"; done
 while :; do
   printf '%s\n' "${targets[@]}" | xargs -P "$jobs" -I{} bash -c 'fuzz_one {}'
   echo "$(sum 1) executions in $(sum 2) s of runs"

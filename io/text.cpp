@@ -21,6 +21,22 @@ bool shows(std::string_view character) {
          character != "\ufeff";
 }
 
+/// Of a decimal number that is not 0, by where its first digit above 0 stands: "0.001e2", "-.5".
+bool is_below_one(std::string_view s) {
+  const std::size_t e = std::min(s.find_first_of("eE"), s.size());
+  const std::string_view digits = s.substr(0, e);
+  const auto point = static_cast<long long>(std::min(digits.find('.'), digits.size()));
+  const auto first = static_cast<long long>(digits.find_first_of("123456789"));
+  std::string_view written = s.substr(std::min(e + 1, s.size()));
+  const bool is_negative = written.starts_with('-');
+  if (is_negative || written.starts_with('+')) written.remove_prefix(1);
+  long long exponent = 0;  // stays 0 when there is none
+  const auto parsed = std::from_chars(written.data(), written.data() + written.size(), exponent);
+  if (parsed.ec == std::errc::result_out_of_range) return is_negative;
+  // 10^(point - first - 1) has that digit before the point, as 10^(point - first) does behind it.
+  return (is_negative ? -exponent : exponent) < (first < point ? first + 1 - point : first - point);
+}
+
 }  // namespace
 
 std::string to_lower(std::string_view s) {
@@ -59,9 +75,8 @@ std::optional<double> to_number(std::string_view s) {
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), value);
   if (end != s.data() + s.size() || s.empty()) return std::nullopt;
   if (error == std::errc::result_out_of_range) {  // 1e-400 is 0, 1e400 is too much for anyone
-    const std::size_t exponent = s.find_first_of("eE");
-    const bool tiny = exponent != s.npos && exponent + 1 < s.size() && s[exponent + 1] == '-';
-    return tiny ? 0.0 : std::numeric_limits<double>::infinity();
+    const double most = std::numeric_limits<double>::infinity();
+    return is_below_one(s) ? 0.0 : s[0] == '-' ? -most : most;
   }
   return error == std::errc{} ? std::optional(value) : std::nullopt;
 }

@@ -97,6 +97,7 @@ const std::vector<Library>& libraries() {
       {"JSON", std::regex("nlohmann/.*"), {"io/", "apps/"}, true},
       {"TBB", std::regex("(tbb|oneapi)/.*"), {"solver/model/parallel.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"apps/"}},
+      {"ThreadSanitizer", std::regex("sanitizer/tsan_interface\\.h"), {"solver/model/parallel.cpp"}},
   };
   return all;
 }

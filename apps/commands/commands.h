@@ -1,6 +1,6 @@
 #pragma once
 // The commands of the program: one file each. To add one, write commands/NAME.cpp, declare it here and name it in
-// main.cpp.
+// command_line.cpp.
 
 #include <functional>
 

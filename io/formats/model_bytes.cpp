@@ -45,6 +45,9 @@ class Reader {
   void plain(T& value) {
     std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
   }
+  void plain(bool& value) { value = below<std::uint8_t>(2) == 1; }
+  void plain(Up& value) { value = Up{below<int>(2)}; }
+  void plain(MaterialKind& value) { value = MaterialKind{below<int>(std::size(kMaterialKindNames))}; }
   template <class T>
   void array(std::vector<T>& values) {
     const std::uint64_t n = count(sizeof(T));
@@ -61,6 +64,13 @@ class Reader {
   bool at_end() const { return rest_.empty(); }
 
  private:
+  template <class Number>
+  Number below(Number end) {
+    Number n{};
+    plain(n);
+    if (n < 0 || n >= end) throw std::runtime_error("model bytes hold a value that there is not");
+    return n;
+  }
   std::uint64_t count(std::size_t bytes_each) {
     std::uint64_t n = 0;
     plain(n);

@@ -1,5 +1,6 @@
 // A small stand-in for libFuzzer: mutates the files of a corpus for a while, always in the same order.
-//   fuzz_ply [--inputs 300] [--seconds 0] [--seed 1] CORPUS_FOLDER    or    fuzz_ply FILE   to try one input again
+//   fuzz_ply [--inputs 300] [--seconds 0] [--seed 1] CORPUS_FOLDER [FOLDER]    or    fuzz_ply FILE   to try one again
+// All of the corpus must be read; the second folder holds what once was a finding, which may be refused.
 
 #include <algorithm>
 #include <chrono>
@@ -79,6 +80,14 @@ void mutate(std::string& s, const std::vector<std::string>& corpus, RandomStream
   if (s.size() > (1 << 16)) s.resize(1 << 16);
 }
 
+std::vector<std::string> inputs_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(folder), {});
+  std::sort(files.begin(), files.end());
+  std::vector<std::string> inputs;
+  for (const auto& file : files) inputs.push_back(bytes_of(file));
+  return inputs;
+}
+
 int run(const std::string& input) {
   return LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
 }
@@ -88,7 +97,7 @@ int run(const std::string& input) {
 int main(int argc, char** argv) try {
   double seconds = 0;
   std::uint64_t inputs = 300, seed = 1;
-  std::filesystem::path from;
+  std::vector<std::filesystem::path> from;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--seconds") == 0 && i + 1 < argc) {
       seconds = std::atof(argv[++i]);
@@ -97,24 +106,26 @@ int main(int argc, char** argv) try {
     } else if (std::strcmp(argv[i], "--seed") == 0 && i + 1 < argc) {
       seed = std::strtoull(argv[++i], nullptr, 10);
     } else {
-      from = argv[i];
+      from.emplace_back(argv[i]);
     }
   }
   if (from.empty()) {
-    std::fprintf(stderr, "usage: %s [--inputs 300] [--seconds 0] [--seed 1] CORPUS_FOLDER | FILE\n", argv[0]);
+    std::fprintf(stderr, "usage: %s [--inputs 300] [--seconds 0] [--seed 1] CORPUS_FOLDER [FOLDER] | FILE\n", argv[0]);
     return 2;
   }
-  if (!std::filesystem::is_directory(from)) return run(bytes_of(from));
+  if (!std::filesystem::is_directory(from.front())) return run(bytes_of(from.front()));
 
-  std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(from), {});
-  std::sort(files.begin(), files.end());
-  std::vector<std::string> corpus;
-  for (const auto& file : files) corpus.push_back(bytes_of(file));
+  std::vector<std::string> corpus = inputs_of(from.front());
   for (const std::string& input : corpus) run(input);
   if (corpus.empty() || clerestory::fuzz_tally.refused > 0) {
     std::fprintf(stderr, "%s: the corpus itself must be read without a refusal\n", argv[0]);
     return 1;
   }
+  for (std::size_t k = 1; k < from.size(); ++k)
+    for (std::string& input : inputs_of(from[k])) {
+      run(input);
+      corpus.push_back(std::move(input));
+    }
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   double slowest = 0;
   for (std::uint64_t n = 0; n < inputs || std::chrono::steady_clock::now() < end; ++n) {

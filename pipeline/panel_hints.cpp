@@ -19,8 +19,9 @@ constexpr double kWorthAWord = 0.1;                ///< share of the points
 
 /// What rays from one side of a point meet.
 struct Sight {
-  std::uint32_t room = 0;        ///< fronts farther away than kRightBehind
+  std::uint32_t room = 0;        ///< fronts farther away than kRightBehind, and diffusers, which let light out
   std::uint32_t other_room = 0;  ///< those of other materials
+  std::uint32_t far = 0;         ///< other materials farther away than kRightBehind, whichever side of them
   std::uint32_t close = 0;       ///< other materials within kClose of the panel's plane
 };
 
@@ -68,8 +69,13 @@ Sight look(const Problem& problem, MaterialId m, const Vec3& point, const Vec3& 
     const Side side = dot(normal, hit.direction(ray)) < 0 ? kFront : kBack;
     const MaterialId material = patches.side_material[hit.triangle][side];
     const bool is_other = material.value != m.value;
-    const bool is_room = side == kFront && double{hit.distance} > kRightBehind;
-    sight.room += is_room, sight.other_room += is_room && is_other;
+    const bool is_far = double{hit.distance} > kRightBehind;
+    if (patches.materials[material].scatters_through()) {
+      ++sight.room;
+      continue;
+    }
+    sight.room += is_far && side == kFront, sight.other_room += is_far && side == kFront && is_other;
+    sight.far += is_far && is_other;
     const double across = dot(hit.position(ray) - p, n);
     if (hit.reflected || !is_other || across > kClose) continue;
     ++sight.close;
@@ -118,10 +124,10 @@ std::string hint_about(const Problem& problem, MaterialId m, const std::vector<T
       for (const auto& [material, count] : near.materials) neighbours.materials[material] += count;
     };
     const auto is_wasted = [](const Sight& near, const Sight& far) {
-      return near.close > 0.8 * kRays && far.close < 0.2 * kRays && far.other_room > 0.5 * kRays;
+      return near.close > 0.8 * kRays && far.close < 0.2 * kRays && far.far > 0.5 * kRays;
     };
     if (one_sided) {
-      if (front.room < 0.1 * kRays && back.other_room > 0.5 * kRays) add(at_front);
+      if (is_wasted(front, back) || (front.room < 0.1 * kRays && back.other_room > 0.5 * kRays)) add(at_front);
     } else if (is_wasted(front, back)) {
       add(at_front);
     } else if (is_wasted(back, front)) {

@@ -80,6 +80,23 @@ TEST_F(Panels, OfTwoSidesUnderTheCeilingSpendHalfOfTheirLightThere) {
       << wrong[0];
 }
 
+TEST_F(Panels, InARoomThatIsWoundOutwardsAreToldByWhatIsClose) {
+  scene_.polygons = {};
+  box({0, 0, 0}, {4, 4, 3}, 0, false);
+  panel(2.99, false);
+  EXPECT_EQ(hints(1).size(), 1u);
+  EXPECT_EQ(hints(2).size(), 1u);
+}
+
+TEST_F(Panels, BehindADiffuserAreRight) {
+  scene_.materials.push_back(scene_.materials[0]);
+  scene_.materials[2].name = "opal", scene_.materials[2].kind = MaterialKind::diffuser;
+  scene_.materials[2].transmittance = Spectrum(0.4);
+  panel(2.2, true);
+  face({Vec3{1.4, 1.4, 2.17}, {1.4, 2.2, 2.17}, {2.2, 2.2, 2.17}, {2.2, 1.4, 2.17}}, 2);
+  EXPECT_TRUE(hints(1).empty());
+}
+
 TEST_F(Panels, OfWhichSomeAreWrongAreNamedWithTheirShare) {
   panel(2.99, false);
   for (const double y : {0.2, 1.0, 2.9})

@@ -12,9 +12,9 @@ namespace clerestory {
 
 /// What the command line says about a model given directly; a scene file says it itself.
 struct ReadOptions {
-  std::optional<std::string> unit;  ///< m | cm | mm | ft | in
-  std::optional<std::string> up;    ///< y | z
-  std::optional<std::string> sky;   ///< NAME[:LUX]
+  std::optional<std::string> unit;      ///< m | cm | mm | ft | in
+  std::optional<std::string> up;        ///< y | z
+  std::optional<std::string> sky;       ///< NAME[:LUX]
   std::function<bool()> should_stop{};  ///< asked while a model is read that takes long; when true, Interrupted
 };
 

@@ -81,9 +81,9 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     if (scene.polygons.face_count() + model->second.polygons.face_count() > kMaxFaces) {
       throw InputError(text(object.where(), ": more than ", kMaxFaces, " faces in one scene"));
     }
-    place_model(scene, model->second, model_file, placement,
-                [&](Material& material) { return apply_rules(rules, material); },
-                [&](const ModelFixture& fixture) { return apply_rules(fixtures, fixture); });
+    place_model(
+        scene, model->second, model_file, placement, [&](Material& material) { return apply_rules(rules, material); },
+        [&](const ModelFixture& fixture) { return apply_rules(fixtures, fixture); });
   }
 }
 
@@ -140,7 +140,8 @@ void compare_north(const JsonObject& root, const std::string& file_name, Scene& 
   if (std::abs(off) < 0.1) return;
   scene.warnings.push_back(text(file_name, ": the model says that north is ", *scene.model_north_deg,
                                 " degrees clockwise from +y, the scene's location says ", said,
-                                "; the scene counts. Write \"north\": ", *scene.model_north_deg, " to follow the model"));
+                                "; the scene counts. Write \"north\": ", *scene.model_north_deg,
+                                " to follow the model"));
 }
 
 }  // namespace

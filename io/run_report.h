@@ -61,8 +61,8 @@ struct RunReport {
     std::string name, long_name;
     double area = 0, height = 0, volume = 0;  ///< [m2], [m], [m3]; 0 where the model gives no volume
   };
-  std::vector<Space> spaces;       ///< rooms that the models name
-  std::vector<NotRead> not_read;   ///< what the models hold and their readers did not use
+  std::vector<Space> spaces;           ///< rooms that the models name
+  std::vector<NotRead> not_read;       ///< what the models hold and their readers did not use
   std::vector<SensorSummary> sensors;  ///< one a set
   StopReason stop = StopReason::converged;
   MeshReport repairs;

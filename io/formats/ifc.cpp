@@ -43,7 +43,8 @@ void refuse_what_is_no_step_file(const std::filesystem::path& file) {
     throw InputError(text(name, ": cannot be read: it does not begin with ISO-10303-21; as IFC files do; ",
                           "the file is damaged or not what its name says"));
   if (tail.find("END-ISO-10303-21") == tail.npos)
-    throw InputError(text(name, ": is cut off: its last line END-ISO-10303-21; is missing; copy or export it ", "again"));
+    throw InputError(
+        text(name, ": is cut off: its last line END-ISO-10303-21; is missing; copy or export it ", "again"));
 }
 
 /// Beside the program, in the build tree as where it is installed; else where the library was installed.
@@ -53,8 +54,8 @@ std::filesystem::path reader_script(const std::string& name) {
   const std::filesystem::path beside = program.parent_path().parent_path() / CLERESTORY_IFC_FOLDER;
   for (const std::filesystem::path& folder : {beside, std::filesystem::path(CLERESTORY_INSTALLED_IFC_FOLDER)})
     if (std::filesystem::exists(folder / "node_modules/web-ifc/package.json", error)) return folder / "read_ifc.mjs";
-  throw InputError(text(name, ": IFC is read by web-ifc, which is not in ", beside.string(),
-                        "; to install it, run ", kInstall, " in the source folder, then build again. Only .ifc needs it"));
+  throw InputError(text(name, ": IFC is read by web-ifc, which is not in ", beside.string(), "; to install it, run ",
+                        kInstall, " in the source folder, then build again. Only .ifc needs it"));
 }
 
 std::string node(const std::string& name) {

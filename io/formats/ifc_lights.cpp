@@ -109,9 +109,10 @@ std::optional<Luminaire> luminaire_of(const Json& source, const std::string& fix
   const auto web = given.is_object() ? web_of(given, name, warnings) : web_beside(ifc_file, file, warnings);
   if (!web || !(web->flux > 0)) {
     warnings.push_back(text("the light '", quotable(name), "' is taken as a point of ", flux, " lm: ",
-                            given.is_object()  ? "its intensities are not planes of type C with common angles"
-                            : !file.empty()    ? text("its photometric file '", quotable(file), "' is not beside the model")
-                                               : "the file does not say where its light goes"));
+                            given.is_object() ? "its intensities are not planes of type C with common angles"
+                            : !file.empty()
+                                ? text("its photometric file '", quotable(file), "' is not beside the model")
+                                : "the file does not say where its light goes"));
     return Luminaire{name, vector(source, "position"), "", PointLuminaire{power}};
   }
   WebLuminaire luminaire;

@@ -11,10 +11,10 @@
 namespace clerestory {
 
 struct ProgramLimits {
-  std::chrono::seconds cpu_time{60};                       ///< of all its threads
-  std::chrono::seconds time{240};                          ///< on the clock, for a program that waits
-  std::uint64_t memory_bytes = std::uint64_t{4} << 30;     ///< that it holds in memory, looked at ten times a second
-  std::uint64_t answer_bytes = std::uint64_t{8} << 30;     ///< that it writes
+  std::chrono::seconds cpu_time{60};                    ///< of all its threads
+  std::chrono::seconds time{240};                       ///< on the clock, for a program that waits
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< that it holds in memory, looked at ten times a second
+  std::uint64_t answer_bytes = std::uint64_t{8} << 30;  ///< that it writes
 };
 
 /// The program ended without success. what() says how, to be put behind its name: "crashed", "took longer than 60 s",

@@ -22,7 +22,7 @@ void read_luminaire_entries(const JsonObject& root, const std::string& file_name
 /// What luminaire a lamp is that a model places: of "fixtures", patterns of its name and its type's, first match wins.
 struct FixtureRule {
   std::string pattern, group;
-  WebLuminaire luminaire;    ///< axes as it shines along the fixture's own -z
+  WebLuminaire luminaire;  ///< axes as it shines along the fixture's own -z
   bool flux_is_given = false;
   std::size_t used = 0;
 };

@@ -114,8 +114,8 @@ constexpr double kWorkPlane = 0.8;  // [m] above the floor
 
 /// Points of a grid in one space.
 SensorSet grid_in(const NamedSpace& space, const JsonObject& object, SensorKind kind, std::size_t room_left) {
-  const double height =
-      object.number("height", {.low = 0, .high = 1e6, .advice = "it is in metres above the floor"}).value_or(kWorkPlane);
+  const double height = object.number("height", {.low = 0, .high = 1e6, .advice = "it is in metres above the floor"})
+                            .value_or(kWorkPlane);
   object.at("spacing");
   const double spacing =
       *object.number("spacing", {.low = 0, .high = 1e12, .low_allowed = false, .advice = "it is in metres"});
@@ -193,9 +193,9 @@ SensorEntries read_sensor_entries(const Json& sensors, const std::string& file_n
   std::vector<SensorSet>& sets = entries.sets;
   std::size_t total = 0, n = 0;
   for (const Json& entry : as_array(sensors, file_name + ": sensors", "sensor sets")) {
-    const JsonObject object(entry, text(file_name, ": sensors[", n++, "]"),
-                            {"name", "file", "origin", "u", "v", "spacing", "normal", "kind", "camera", "threshold",
-                             "space", "height"});
+    const JsonObject object(
+        entry, text(file_name, ": sensors[", n++, "]"),
+        {"name", "file", "origin", "u", "v", "spacing", "normal", "kind", "camera", "threshold", "space", "height"});
     const SensorKind kind = read_kind(object);
     const std::size_t weight = planes_a_sensor(kind);
     const auto threshold =

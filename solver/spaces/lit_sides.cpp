@@ -129,7 +129,6 @@ Found look_for_lights(const Problem& problem, const LightSampler& emitters, std:
                       std::size_t samples, std::uint64_t seed) {
   const auto corners = problem.patches.corner_positions(PatchId{i});
   const Vec3 n = problem.patches.normal[i];
-  const double lift = problem.rays.lift();
   const std::uint64_t key = stream_key(seed, kLuminaireSearch, i);
   std::array<Vec3, kLuminaireSamples> points;
   for (std::uint32_t k = 0; k < points.size(); ++k) {

@@ -17,7 +17,7 @@ const kSegments = 32;      // of a circle
 const kMostRestarts = 20;  // after shapes that end the WebAssembly machine
 
 /** Products that are no matter for light, or not there to be seen. */
-const kNoMatter = /^Ifc(?:OpeningElement|OpeningStandardCase|VoidingFeature|VirtualElement|Annotation|Grid|.*Port|Structural.*|SpatialZone|ExternalSpatialElement|Reinforcing.*|Tendon.*|Referent|Positioning.*|Linear.*|Alignment.*)$/;
+const kNoMatter = /^Ifc(?:OpeningElement|OpeningStandardCase|VoidingFeature|EarthworksCut|VirtualElement|Annotation|Grid|.*Port|Structural.*|SpatialZone|ExternalSpatialElement|Reinforcing.*|Tendon.*|Referent|Positioning.*|Linear.*|Alignment.*)$/;
 /** Shapes of these are seen when there is no body. */
 const kNotTheBody = /^(?:axis|box|footprint|foot print|profile|annotation|clearance|cog|reference|surveypoints|lighting|lightsource|body-fallback|plan|facetation)$/i;
 /** Representation items that are no surfaces. */
@@ -105,7 +105,7 @@ class Reader {
     const name = textOf(line.Name) || textOf(line.LongName) || textOf(line.ObjectType) || `${className} ${textOf(line.Tag) || id}`;
     this.current.name = name;
     if (kNoMatter.test(className)) {
-      const isCut = /^Ifc(?:Opening|Voiding)/.test(className) && this.cuts.has(id);
+      const isCut = /^Ifc(?:Opening|Voiding|EarthworksCut)/.test(className) && this.cuts.has(id);
       if (idOf(line.Representation) && !isCut) this.leftOut.add(className, name);
       return;
     }

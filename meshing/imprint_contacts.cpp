@@ -96,10 +96,15 @@ std::optional<Contact> contact(const FaceComplex& complex, std::uint32_t face_a,
 std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector<PlaneGroup>& groups,
                                    const std::vector<std::uint32_t>& group_of) {
   const std::size_t count = complex.faces.size();
+  // What contact() takes for rounding, and no more: beside a stray face far away that of the model covers all the rest.
+  std::vector<double> margin(count);
+  for (std::size_t f = 0; f < count; ++f)
+    margin[f] =
+        std::min(complex.allowed.contact / 2, complex.allowed.local_share * longest_edge(complex, complex.faces[f]));
   const auto box_of = [&](std::size_t f) {
     Box box;
     for (const std::uint32_t v : complex.faces[f].corner) box.add(complex.vertices[v]);
-    return box.grown(complex.allowed.contact / 2);
+    return box.grown(margin[f]);
   };
   const BoxTree tree(count, box_of);
   constexpr std::uint32_t kSeveral = 0xffffffff;
@@ -178,7 +183,7 @@ struct Layer {
     Box operator()(std::uint32_t i) const {
       Box box;
       box.add(complex->vertices[(*vertex)[i]]);
-      return box.grown(complex->allowed.contact);
+      return box.grown(1.01 * complex->tolerance[(*vertex)[i]]);
     }
   };
   std::vector<std::uint32_t> vertex;

@@ -1,6 +1,7 @@
 #pragma once
 // CGAL's constrained Delaunay triangulation as this folder uses it. Include from .cpp files only: it is heavy.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -43,6 +44,14 @@ inline void sort_by_place(std::span<std::pair<CdtKernel::Point_2, CdtVertex>> po
       CGAL::Spatial_sort_traits_adapter_2<CdtKernel,
                                           CGAL::First_of_pair_property_map<std::pair<CdtKernel::Point_2, CdtVertex>>>;
   CGAL::hilbert_sort(points.begin(), points.end(), Traits());
+  // A triangle first: as long as all lie on a line, each is looked for along it from its end.
+  const auto bring_forward = [&](std::size_t place, const auto& is_wanted) {
+    const auto found = std::find_if(points.begin() + static_cast<std::ptrdiff_t>(place), points.end(),
+                                    [&](const auto& p) { return is_wanted(p.first); });
+    if (found != points.end()) std::swap(points[place], *found);
+  };
+  bring_forward(1, [&](const auto& p) { return p != points[0].first; });
+  bring_forward(2, [&](const auto& p) { return !CGAL::collinear(points[0].first, points[1].first, p); });
 }
 
 /// Draws points and lines of a plane into a triangulation, ids in ascending order so that the result is always the

@@ -2,9 +2,11 @@
 // Points by place: finds the known point nearest to another within a small radius.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,11 +16,11 @@
 namespace clerestory {
 
 /// Hash grid over points of a growing array that it does not own. Cost: one to eight cells a query.
-class PointIndex {
+class PointGrid {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  PointIndex(const std::vector<Vec3>& points, double largest_radius) : points_(&points), cell_(8 * largest_radius) {}
+  PointGrid(const std::vector<Vec3>& points, double cell) : points_(&points), cell_(cell) {}
 
   void add(std::uint32_t id) {
     if (next_.size() <= id) next_.resize(id + 1, kNone);
@@ -79,6 +81,40 @@ class PointIndex {
   std::vector<std::uint32_t> first_;  ///< open hash table of cells: a point of each; half empty, a power of two long
   std::size_t cells_ = 0;
   std::vector<std::uint32_t> next_;  ///< by point, another one of its cell
+};
+
+/// Points by place, for radii of any size up to the largest: a grid for each power of 64, made when it is first asked.
+/// In one grid a model far smaller than its largest face would lie in one cell.
+class PointIndex {
+ public:
+  static constexpr std::uint32_t kNone = PointGrid::kNone;
+
+  PointIndex(const std::vector<Vec3>& points, double largest_radius) : points_(&points), largest_(largest_radius) {}
+
+  void add(std::uint32_t id) {
+    added_.push_back(id);
+    for (auto& grid : grids_)
+      if (grid) grid->add(id);
+  }
+  /// As PointGrid::find.
+  std::uint32_t find(const Vec3& p, double radius) {
+    std::size_t level = 0;
+    double fits = largest_;
+    for (; level + 1 < grids_.size() && radius < fits / kFiner; ++level) fits /= kFiner;
+    auto& grid = grids_[level];
+    if (!grid) {
+      grid.emplace(*points_, 8 * fits);
+      for (const std::uint32_t id : added_) grid->add(id);
+    }
+    return grid->find(p, radius);
+  }
+
+ private:
+  static constexpr double kFiner = 64;
+  const std::vector<Vec3>* points_;
+  double largest_;
+  std::vector<std::uint32_t> added_;
+  std::array<std::optional<PointGrid>, 6> grids_;
 };
 
 }  // namespace clerestory

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_set>
 
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
@@ -103,19 +104,27 @@ std::string row_list(const std::vector<std::size_t>& rows) {
   return text;
 }
 
-std::string why_unused(const std::string& pattern, const Scene& scene) {
-  if (pattern.find_first_of("*?") != pattern.npos) return "matches no material of the model that is left to it.";
-  std::vector<std::string_view> names;
-  for (const Material& material : scene.materials) {
-    if (material.name == pattern) return "decides nothing: a rule before it matches that material first.";
-    names.push_back(material.name);
+/// Tells why rules match nothing.
+class UnusedRules {
+ public:
+  explicit UnusedRules(const Scene& scene) {
+    for (const Material& material : scene.materials) names_.insert(material.name);
+    constexpr std::size_t kMostPairs = 200'000;  // of names to compare, for a hint
+    if (scene.materials.size() * scene.unused_materials.size() > kMostPairs) return;
+    for (const Material& material : scene.materials) known_.push_back(material.name);
   }
-  constexpr std::size_t kMostPairs = 200'000;  // of names to compare, for a hint
-  if (names.size() * scene.unused_materials.size() > kMostPairs) names.clear();
-  const std::string near = suggestion(pattern, names);
-  return near.starts_with("did you mean") ? "matches no material of the model; " + near
-                                          : "matches no material of the model.";
-}
+  std::string why(const std::string& pattern) const {
+    if (pattern.find_first_of("*?") != pattern.npos) return "matches no material of the model that is left to it.";
+    if (names_.contains(pattern)) return "decides nothing: a rule before it matches that material first.";
+    const std::string near = suggestion(pattern, known_);
+    return near.starts_with("did you mean") ? "matches no material of the model; " + near
+                                            : "matches no material of the model.";
+  }
+
+ private:
+  std::unordered_set<std::string_view> names_;
+  std::vector<std::string_view> known_;  ///< those that a pattern is compared with, in the model's order
+};
 
 /// Of very many only as many as can be looked at in a second or two, evenly spread. Returns the planes that are buried.
 std::vector<std::size_t> warn_about_sensors(const Problem& problem, const std::string& file,
@@ -169,8 +178,9 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
   for (std::size_t i = 0; i < std::min(scene.warnings.size(), kShown); ++i) observer.warn(scene.warnings[i]);
   if (scene.warnings.size() > kShown)
     observer.warn(scene.file + ": " + grouped(scene.warnings.size() - kShown) + " more warnings are left out.");
+  const UnusedRules unused(scene);
   for (const std::string& name : scene.unused_materials)
-    observer.warn(scene.file + ": materials '" + quotable(name) + "' " + why_unused(name, scene));
+    observer.warn(scene.file + ": materials '" + quotable(name) + "' " + unused.why(name));
 }
 
 std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -96,7 +97,8 @@ class BoxTree {
   }
 
  private:
-  static constexpr std::uint32_t kLeaf = 4;  ///< most boxes of a leaf
+  static constexpr std::uint32_t kLeaf = 4;     ///< most boxes of a leaf
+  static constexpr std::size_t kTogether = 64;  ///< as many boxes may have one code
 
   struct Node {
     std::array<float, 3> lower, upper;  ///< rounded outwards
@@ -119,25 +121,40 @@ class BoxTree {
   }
 
   void sort(std::size_t n) {
+    order_.resize(n);
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+    sort(0, n, keys);
+  }
+  /// Boxes that fall together beside the extent of all are sorted by their own: a small model beside a stray face.
+  void sort(std::size_t begin, std::size_t end, std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys) {
     Box centres;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const Box& b = box_of_(i);
+    for (std::size_t k = begin; k < end; ++k) {
+      const Box& b = box_of_(order_[k]);
       centres.add(b.lower + b.upper);
     }
     const Vec3 size = centres.upper - centres.lower;
     const double widest = std::max({size.x, size.y, size.z});
-    const double scale = widest > 0 ? 0x1fffff / widest : 0;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(n);
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const Box& b = box_of_(i);
+    if (!(widest > 0)) return;
+    const double scale = 0x1fffff / widest;
+    if (!std::isfinite(scale)) return;
+    keys.resize(end - begin);
+    for (std::size_t k = begin; k < end; ++k) {
+      const Box& b = box_of_(order_[k]);
       const Vec3 d = (b.lower + b.upper - centres.lower) * scale;
-      keys[i] = {spread(static_cast<std::uint64_t>(d.x)) | spread(static_cast<std::uint64_t>(d.y)) << 1 |
-                     spread(static_cast<std::uint64_t>(d.z)) << 2,
-                 i};
+      keys[k - begin] = {spread(static_cast<std::uint64_t>(d.x)) | spread(static_cast<std::uint64_t>(d.y)) << 1 |
+                             spread(static_cast<std::uint64_t>(d.z)) << 2,
+                         order_[k]};
     }
     std::sort(keys.begin(), keys.end());
-    order_.resize(n);
-    for (std::size_t k = 0; k < n; ++k) order_[k] = keys[k].second;
+    std::vector<std::pair<std::size_t, std::size_t>> together;
+    for (std::size_t k = begin, first = begin; k < end; ++k) {
+      order_[k] = keys[k - begin].second;
+      const bool is_last = k + 1 == end || keys[k + 1 - begin].first != keys[k - begin].first;
+      if (is_last && k + 1 - first > kTogether) together.push_back({first, k + 1});
+      if (is_last) first = k + 1;
+    }
+    for (const auto& [from, to] : together) sort(from, to, keys);
   }
 
   Box build(std::uint32_t begin, std::uint32_t end) {

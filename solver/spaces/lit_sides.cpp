@@ -203,7 +203,7 @@ void search_lights(const Problem& problem, const Field& glow, const std::vector<
                    std::size_t samples, std::uint64_t seed, const Monitor& monitor, Spaces& spaces) {
   const LightSampler emitters(problem, glow);
   // So that the effort has a bound.
-  constexpr std::size_t kMostPairs = 1 << 25;
+  constexpr std::size_t kMostPairs = 1 << 20;
   const std::size_t stride = 1 + receivers.size() * problem.lights.luminaires.size() / kMostPairs;
   for (std::size_t begin = 0; begin < receivers.size() && !monitor.should_stop(); begin += kBlock) {
     std::vector<Found> found(std::min(kBlock, receivers.size() - begin));

@@ -184,5 +184,18 @@ TEST(Crowded, BoxesOnOneFloorCostWhatTheirNumberDoes) {
   EXPECT_NEAR(surface_area(meshed.patches), floor + 5.0 * kSide * kSide, 1e-6 * floor);
 }
 
+TEST(Crowded, ASmallModelBesideAStrayFaceFarAwayCostsWhatItWouldAlone) {
+  constexpr int kSide = 120;
+  SceneMaker maker;
+  maker.polygon({{1e9, 0, 0}, {1e9, 1, 0}, {1e9, 0, 1}});
+  for (int k = 0; k < kSide * kSide; ++k) {
+    const int place = k * 7919 % (kSide * kSide);  // in no order
+    const double x = 2.0 * (place % kSide), y = 2.0 * (place / kSide);
+    maker.box({x, y, 0}, {x + 1, y + 1, 1});
+  }
+  // The grid of 2^-32 is 0.2 m then: nothing is promised of the boxes but an end.
+  EXPECT_GT(build_patches(maker.scene(), {.max_element = 1e9}).patches.triangle_count(), 0u);
+}
+
 }  // namespace
 }  // namespace clerestory

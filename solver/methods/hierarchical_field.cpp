@@ -80,9 +80,7 @@ std::vector<double> put_right(const ElementMesh& mesh, std::span<const std::uint
 
 Field without_delta_light(const VertexField& field) {
   Field rest = field.E;
-  // Where there is nothing else, sums of the same light in another order may leave less than nothing.
-  for (std::size_t k = 0; k < rest.value.size(); ++k)
-    rest.value[k] = std::max(0.0, rest.value[k] - field.delta_light.value[k]);
+  for (std::size_t k = 0; k < rest.value.size(); ++k) rest.value[k] -= field.delta_light.value[k];
   return rest;
 }
 

@@ -257,7 +257,8 @@ Field leaf_irradiance(const ElementMesh& mesh, const Field& E) {
       const double corners = (value[point[0]] + value[point[1]] + value[point[2]]) / 3;
       double off = 0;
       for (std::size_t k = 0; k < 3; ++k) off += bulge(x, point, gradient, k) / 3;
-      mean.at(i, c) = corners + std::clamp(off, -kMostBulge * corners, kMostBulge * corners);
+      const double most = kMostBulge * std::abs(corners);  // all but dark, an estimate may be below 0
+      mean.at(i, c) = corners + std::clamp(off, -most, most);
     }
   }
   return mean;

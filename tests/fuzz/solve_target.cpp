@@ -1,6 +1,7 @@
 // A small scene made of any bytes, solved by any method: light that is finite, not negative, and no more than there can
 // be; or refused.
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/solve_scene.h"
@@ -12,9 +13,14 @@
 namespace clerestory {
 namespace {
 
-void require_light(const Field& field, const char* what) {
-  for (const double x : field.value)
-    require(std::isfinite(x) && x >= 0, std::string(what) + " is negative or infinite");
+/// An unbiased estimate of what is all but dark may be a little less than nothing (solver/gather/gather_point.cpp).
+void require_light(const Field& field, const std::string& what) {
+  double most = 0;
+  for (const double x : field.value) {
+    require(std::isfinite(x), what + " is infinite");
+    most = std::max(most, x);
+  }
+  for (const double x : field.value) require(x >= -1e-3 * most, what + " is negative");
 }
 
 void check(const Solved& solved) {
@@ -42,7 +48,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   settings.solve.accuracy = Accuracy::draft;
   settings.solve.method = static_cast<Method>(bytes.below(std::size(kMethodNames)));
   settings.max_element = 2;
-  settings.time_limit = 2;  // the error is measured for as long as that takes
   const std::size_t light = bytes.next();
   Scene scene = soup_from(bytes);
   if (light & 1) {

@@ -22,7 +22,17 @@ Beam beam_of(const Luminaire& luminaire) {
   const double filled = beam.peak > 0 ? beam.flux / (std::numbers::pi * beam.peak) : 0;  // square of that half-angle
   beam.finest = std::clamp(kShareOfBeam * std::sqrt(filled), kFinest, kCoarsest);
   beam.is_even = std::holds_alternative<PointLuminaire>(luminaire.kind);
+  if (const auto* spot = std::get_if<SpotLuminaire>(&luminaire.kind))
+    beam.edge_from = std::min(spot->inner_angle, spot->outer_angle), beam.edge_to = spot->outer_angle;
+  beam.depth = dot({std::abs(b.axis.x), std::abs(b.axis.y), std::abs(b.axis.z)}, b.upper - b.lower) / 2;
   return beam;
+}
+
+bool is_behind(const Luminaire& luminaire, const Beam& beam, const std::array<Vec3, 3>& corners) {
+  constexpr double kRightAngle = std::numbers::pi / 2 + 1e-5;
+  if (beam.half_angle > kRightAngle) return false;
+  return std::ranges::all_of(
+      corners, [&](const Vec3& c) { return dot(c - luminaire.position, beam.axis) <= 1e-9 - beam.depth; });
 }
 
 Vec3 direction_in(const Beam& beam, double u, double v) {

@@ -11,6 +11,7 @@ cells (each by its area) and by points (linear between them), CPU seconds of the
 import argparse
 import csv
 import json
+import math
 import os
 import resource
 import subprocess
@@ -36,7 +37,6 @@ def room(folder, size):
 def ies(folder, opening):
     """A Lambertian lamp with a tenth of its light upwards."""
     angles = [2.5 * i for i in range(73)]
-    import math
     cd = [math.cos(math.radians(a)) if a <= 90 else -math.cos(math.radians(a)) / 9 for a in angles]
     with open(os.path.join(folder, "lamp.ies"), "w") as f:
         f.write("IESNA:LM-63-1995\nTILT=NONE\n1 -1 100 %d 1 1 2 %r %r 0\n1 1 0\n" % (len(angles), opening, opening))

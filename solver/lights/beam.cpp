@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "solver/lights/luminaire.h"
+#include "solver/lights/spot_luminaire.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -19,11 +20,13 @@ constexpr double kShareOfBeam = 0.4;  // of the half-angle of a cone that the pe
 Beam beam_of(const Luminaire& luminaire) {
   const LightBounds b = bounds(luminaire);
   Beam beam{b.axis, b.cone < std::numbers::pi ? b.cone : std::numbers::pi, b.power, luminous_mean(power(luminaire)), 0};
+  if (const auto* spot = std::get_if<SpotLuminaire>(&luminaire.kind)) {
+    beam.peak = luminous_mean(intensity(*spot, spot->direction));  // less than nominal in a very narrow cone
+    beam.edge_from = std::min(spot->inner_angle, spot->outer_angle), beam.edge_to = spot->outer_angle;
+  }
   const double filled = beam.peak > 0 ? beam.flux / (std::numbers::pi * beam.peak) : 0;  // square of that half-angle
   beam.finest = std::clamp(kShareOfBeam * std::sqrt(filled), kFinest, kCoarsest);
   beam.is_even = std::holds_alternative<PointLuminaire>(luminaire.kind);
-  if (const auto* spot = std::get_if<SpotLuminaire>(&luminaire.kind))
-    beam.edge_from = std::min(spot->inner_angle, spot->outer_angle), beam.edge_to = spot->outer_angle;
   beam.depth = dot({std::abs(b.axis.x), std::abs(b.axis.y), std::abs(b.axis.z)}, b.upper - b.lower) / 2;
   return beam;
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double kWide = 0.5;  // size / distance, from which on the light of an even luminaire varies over a triangle
 constexpr double kOfAllFlux = 3e-5, kOfTriangle = 3e-3;  // that a cell may be wrong by: of what there is at most
 constexpr double kFlat = 0.02;  // of the peak: bends no more than a formula for quadratic intensity knows
-constexpr std::size_t kMostCells = 4096;
+constexpr std::size_t kMostCells = 1 << 15;
 
 /// Of the directions to the farthest corner and to the middle [rad].
 double radius(const SphericalTriangle& t, const Vec3& middle) {
@@ -54,7 +54,7 @@ LuminaireView::Place LuminaireView::place_of(const Cell& c) const {
   const double half_width = radius(c.to, middle);
   if (off > beam_.half_angle + half_width) return Place::outside;
   const bool is_on_edge = off + half_width > beam_.edge_from && off - half_width < beam_.edge_to;
-  return is_on_edge && 4 * half_width > beam_.edge_to - beam_.edge_from ? Place::on_edge : Place::inside;
+  return is_on_edge && half_width > beam_.edge_to - beam_.edge_from ? Place::on_edge : Place::inside;
 }
 
 void LuminaireView::add(const Cell& whole) {

@@ -84,8 +84,8 @@ def main():
     parser.add_argument("out")
     parser.add_argument("--kinds", nargs="+", default=["point", "ies_at_wall"],
                         choices=["point", "ies_along_wall", "ies_at_wall", "panel"])
-    parser.add_argument("--sizes", nargs="+", type=float, default=[1, 4, 30, 1000])
-    parser.add_argument("--distances", nargs="+", type=float, default=[1e-6, 1e-4, 1e-3, 1e-2, 0.05, 0.2, 1])
+    parser.add_argument("--sizes", nargs="+", type=float, default=[1, 4, 1000])
+    parser.add_argument("--distances", nargs="+", type=float, default=[1e-6, 1e-3, 1e-2, 0.2])
     parser.add_argument("--accuracies", nargs="+", default=["draft", "standard"])
     parser.add_argument("--methods", nargs="+", default=["hierarchical"])
     args = parser.parse_args()

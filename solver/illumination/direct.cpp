@@ -30,6 +30,8 @@ struct ShadowTry {
   std::uint32_t mirror = kNoMirror;
 };
 
+constexpr double kRaysOfAll = 1 << 14;  ///< for all the flux of a luminaire: of patches near it that are partly hidden
+
 /// Mean irradiance of patch i from shadow rays.
 class PatchSampler {
  public:
@@ -68,6 +70,9 @@ class PatchSampler {
     return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
   }
 
+  bool is_behind(const PlacedLuminaire& luminaire, const Beam& beam) const {
+    return clerestory::is_behind(luminaire, beam, corners_);
+  }
   /// Whether the patch has to be looked at from the luminaire: points spread over it would not do.
   bool is_near(const PlacedLuminaire& luminaire, const Beam& beam) const {
     return wants_view(luminaire, beam, corners_);
@@ -85,20 +90,24 @@ class PatchSampler {
     if (opening_rays(luminaire, middle) == 1) {
       const double flux = view.look_from(luminaire.position);
       if (!(flux > 0)) return Spectrum(0.0);
-      return mean_of_tries(
-          [&](std::uint32_t, const std::array<double, 4>& u) { return try_of(flux, luminaire.position, u); },
-          options_.shadow_rays);
+      // What is partly hidden of so much light deserves more rays.
+      const int edge_rays = options_.edge_rays <= options_.shadow_rays
+                                ? options_.edge_rays
+                                : std::max(options_.edge_rays, static_cast<int>(kRaysOfAll * flux / beam.flux));
+      return mean_of_tries([&](std::uint32_t, std::uint64_t,
+                               const std::array<double, 4>& u) { return try_of(flux, luminaire.position, u); },
+                           options_.shadow_rays, edge_rays);
     }
     // All patches near by look from the same points of the opening, so that their sum is exact for each.
-    const std::uint64_t key = stream_key(options_.seed, kPointsOfLuminaire, number);
+    const std::uint64_t places = stream_key(options_.seed, kPointsOfLuminaire, number);
     return mean_of_tries(
-        [&](std::uint32_t k, const std::array<double, 4>& u) -> ShadowTry {
-          const auto place = sobol4(k, key);
+        [&](std::uint32_t k, std::uint64_t, const std::array<double, 4>& u) -> ShadowTry {
+          const auto place = sobol4(k, places);
           const Vec3 q = light_point(luminaire, middle, place[0], place[1]);
-          const double flux = view.look_from(q);
+          const double flux = view.look_from(q, true);
           return flux > 0 ? try_of(flux, q, u) : ShadowTry{};
         },
-        options_.edge_rays);
+        options_.edge_rays, options_.edge_rays);
   }
 
   /// The mean over points of the patch where light(point, u, v, pick) gives the way and the irradiance; pick() is a
@@ -107,24 +116,23 @@ class PatchSampler {
   template <class Light>
   Spectrum mean(const Light& light, bool wide = false) const {
     return mean_of_tries(
-        [&](std::uint32_t k, const std::array<double, 4>& u) {
+        [&](std::uint32_t k, std::uint64_t key, const std::array<double, 4>& u) {
           const Vec3 from = problem_.rays.off_surface(point_on_triangle(corners_, u[0], u[1]), normal_);
-          return light(from, u[2], u[3], [&] { return sobol4(k, key_ + 1)[0]; });
+          return light(from, u[2], u[3], [&] { return sobol4(k, key + 1)[0]; });
         },
-        std::min(options_.edge_rays, options_.shadow_rays * (wide ? 4 : 1)));
+        std::min(options_.edge_rays, options_.shadow_rays * (wide ? 4 : 1)), options_.edge_rays);
   }
 
  private:
-  /// rays  where a pilot sees no edge.
+  /// rays  where a pilot sees no edge; edge_rays: where it does.
   template <class TryOf>
-  Spectrum mean_of_tries(const TryOf& try_of, int rays) const {
-    if (options_.edge_rays <= options_.shadow_rays)
-      return kept(look(key_, options_.shadow_rays, try_of).sum / options_.shadow_rays, options_.shadow_rays);
+  Spectrum mean_of_tries(const TryOf& try_of, int rays, int edge_rays) const {
+    if (edge_rays <= rays) return kept(look(key_, rays, try_of).sum / rays, rays);
     // The pilot only decides. Its values, kept where it saw no edge, would lose the light of spots that it mostly
     // misses; rays that continue its sequence would find too much there, as they fall where its own did not.
     const Tally pilot = look(mix_bits(key_), options_.shadow_rays, try_of);
     const bool on_an_edge = pilot.visible > 0 && pilot.visible < pilot.facing;
-    const int count = on_an_edge ? options_.edge_rays : rays;
+    const int count = on_an_edge ? edge_rays : rays;
     return kept(look(key_, count, try_of).sum / count, count);
   }
 
@@ -168,7 +176,7 @@ class PatchSampler {
       if (row_) note(load.number, arrives);
     });
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count); ++k) {
-      const ShadowTry to_light = try_of(k, sobol4(k, key));
+      const ShadowTry to_light = try_of(k, key, sobol4(k, key));
       if (to_light.irradiance.is_black()) continue;
       ++tally.facing;
       const auto& [from, to, is_free] = to_light.way;
@@ -198,7 +206,7 @@ class PatchSampler {
 Spectrum from_luminaire(const Lights& lights, std::span<const Beam> beams, std::uint32_t number,
                         const PatchSampler& patch) {
   const PlacedLuminaire& luminaire = lights.luminaires[number];
-  if (!patch.faces(luminaire)) return Spectrum(0.0);
+  if (!patch.faces(luminaire) || patch.is_behind(luminaire, beams[number])) return Spectrum(0.0);
   if (patch.is_near(luminaire, beams[number])) return patch.by_view(number, luminaire, beams[number]);
   return patch.mean(
       [&](const Vec3& p, double u, double v, const auto&) -> ShadowTry {
@@ -230,6 +238,7 @@ Spectrum from_luminaires(const Lights& lights, std::span<const Beam> beams, cons
   double all = 0;
   for (std::uint32_t number = 0; number < lights.luminaires.size(); ++number) {
     const PlacedLuminaire& luminaire = lights.luminaires[number];
+    if (patch.is_behind(luminaire, beams[number])) continue;
     if (patch.faces(luminaire) && patch.is_near(luminaire, beams[number])) {
       E += patch.by_view(number, luminaire, beams[number]);
       continue;

@@ -17,9 +17,9 @@ namespace {
 
 // Of the scene's diameter: floats resolve 6e-8 of it, and what rays are lifted by is 5e-7.
 constexpr double kClearance = 2e-6, kDoubleRounding = 1e-12;
-constexpr double kFloatRounding = 1.2e-7;  // of a coordinate: two roundings
-constexpr std::size_t kMostPlanes = 24;    // of a luminaire, the nearest
-constexpr std::uint32_t kRays = 128;       // that tell where its light goes, and whether its side is open
+constexpr double kFloatRounding = 1.2e-7;                  // of a coordinate: two roundings
+constexpr std::size_t kMostFound = 256, kMostPlanes = 24;  // of a luminaire; the nearest
+constexpr std::uint32_t kRays = 128;  // that tell where its light goes, and whether its side is open
 
 /// Point of a triangle that is nearest to p. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.
 Vec3 nearest_point(const std::array<Vec3, 3>& t, const Vec3& p) {
@@ -48,43 +48,52 @@ struct Found {
   double distance;  ///< of the surface from the luminaire's position [m]
 };
 
-/// Planes of all triangles within the clearance of the luminaires, by luminaire, each once.
+/// Box around a luminaire's opening, so much wider.
+struct Reach {
+  Vec3 lower, upper;
+  std::uint32_t luminaire;
+};
+
+/// Planes of all triangles within twice the clearance of the luminaires, by luminaire, each once.
 std::vector<std::vector<Found>> planes_around(const std::vector<PlacedLuminaire>& luminaires, const PatchSet& patches,
                                               double clearance) {
-  std::vector<std::pair<double, std::uint32_t>> by_x;
-  double farthest = 0;
+  std::vector<Reach> by_x;
+  double widest = 0;
+  const Vec3 margin{2 * clearance, 2 * clearance, 2 * clearance};
   for (std::uint32_t k = 0; k < luminaires.size(); ++k) {
-    by_x.emplace_back(luminaires[k].position.x, k);
-    farthest = std::max(farthest, 2 * clearance + reach(luminaires[k]));
+    const LightBounds b = bounds(luminaires[k]);
+    by_x.push_back({b.lower - margin, b.upper + margin, k});
+    widest = std::max(widest, by_x.back().upper.x - by_x.back().lower.x);
   }
-  std::sort(by_x.begin(), by_x.end());
+  std::ranges::stable_sort(by_x, {}, [](const Reach& r) { return r.lower.x; });
   std::vector<std::vector<Found>> found(luminaires.size());
   for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
     const std::array<Vec3, 3> c{patches.vertices[patches.corners[t][0]], patches.vertices[patches.corners[t][1]],
                                 patches.vertices[patches.corners[t][2]]};
-    const double from = std::min({c[0].x, c[1].x, c[2].x}) - farthest,
-                 to = std::max({c[0].x, c[1].x, c[2].x}) + farthest;
-    for (auto at = std::lower_bound(by_x.begin(), by_x.end(), std::pair<double, std::uint32_t>{from, 0});
-         at != by_x.end() && at->first <= to; ++at) {
-      const PlacedLuminaire& luminaire = luminaires[at->second];
-      const Vec3& q = luminaire.position;
-      const double within = 2 * clearance + reach(luminaire);
-      if (std::min({c[0].y, c[1].y, c[2].y}) - q.y > within || q.y - std::max({c[0].y, c[1].y, c[2].y}) > within ||
-          std::min({c[0].z, c[1].z, c[2].z}) - q.z > within || q.z - std::max({c[0].z, c[1].z, c[2].z}) > within)
+    const Vec3 lower{std::min({c[0].x, c[1].x, c[2].x}), std::min({c[0].y, c[1].y, c[2].y}),
+                     std::min({c[0].z, c[1].z, c[2].z})};
+    const Vec3 upper{std::max({c[0].x, c[1].x, c[2].x}), std::max({c[0].y, c[1].y, c[2].y}),
+                     std::max({c[0].z, c[1].z, c[2].z})};
+    const auto first = std::ranges::lower_bound(by_x, lower.x - widest, {}, [](const Reach& r) { return r.lower.x; });
+    for (auto at = first; at != by_x.end() && at->lower.x <= upper.x; ++at) {
+      if (at->upper.x < lower.x || at->lower.y > upper.y || at->upper.y < lower.y || at->lower.z > upper.z ||
+          at->upper.z < lower.z)
         continue;
+      const PlacedLuminaire& luminaire = luminaires[at->luminaire];
+      const Vec3& q = luminaire.position;
       const double distance = length(nearest_point(c, q) - q);
       const Vec3 n = normalized(cross(c[1] - c[0], c[2] - c[0]));
-      if (!(distance <= within) || !(dot(n, n) > 0.5)) continue;
+      if (!(distance <= 2 * clearance + reach(luminaire)) || !(dot(n, n) > 0.5)) continue;
       const NearPlane plane{n, dot(n, c[0]), clearance};
-      auto& planes = found[at->second];
+      auto& planes = found[at->luminaire];
       const auto same = std::ranges::find_if(planes, [&](const Found& f) {
-        return std::abs(dot(f.plane.normal, n)) > 1 - 1e-12 &&
-               std::abs(plane.height(q) * dot(f.plane.normal, n) - f.plane.height(q)) < 1e-6 * clearance;
+        const double along = dot(f.plane.normal, n);
+        return std::abs(along) > 1 - 1e-12 && std::abs(plane.height(q) * along - f.plane.height(q)) < 1e-6 * clearance;
       });
-      if (same == planes.end())
-        planes.push_back({plane, distance});
-      else
+      if (same != planes.end())
         same->distance = std::min(same->distance, distance);
+      else if (planes.size() < kMostFound)
+        planes.push_back({plane, distance});
     }
   }
   return found;
@@ -148,6 +157,7 @@ void find_near_planes(Lights& lights, const PatchSet& patches, const RayScene& r
 }
 
 std::vector<bool> patches_near_luminaires(const PatchSet& patches, const Lights& lights) {
+  if (lights.luminaires.empty()) return std::vector<bool>(patches.patch_count());
   std::vector<Beam> beams;
   for (const Luminaire& luminaire : lights.luminaires) beams.push_back(beam_of(luminaire));
   std::vector<char> near(patches.patch_count(), 0);
@@ -155,7 +165,8 @@ std::vector<bool> patches_near_luminaires(const PatchSet& patches, const Lights&
     for (std::size_t i = from; i < to; ++i) {
       const auto corners = patches.corner_positions(PatchId{i});
       for (std::size_t k = 0; k < beams.size() && !near[i]; ++k)
-        near[i] = wants_view(lights.luminaires[k], beams[k], corners);
+        near[i] =
+            wants_view(lights.luminaires[k], beams[k], corners) && !is_behind(lights.luminaires[k], beams[k], corners);
     }
   });
   return {near.begin(), near.end()};

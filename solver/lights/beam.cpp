@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "solver/lights/luminaire.h"
+#include "solver/lights/spot_luminaire.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -19,10 +20,22 @@ constexpr double kShareOfBeam = 0.4;  // of the half-angle of a cone that the pe
 Beam beam_of(const Luminaire& luminaire) {
   const LightBounds b = bounds(luminaire);
   Beam beam{b.axis, b.cone < std::numbers::pi ? b.cone : std::numbers::pi, b.power, luminous_mean(power(luminaire)), 0};
+  if (const auto* spot = std::get_if<SpotLuminaire>(&luminaire.kind)) {
+    beam.peak = luminous_mean(intensity(*spot, spot->direction));  // less than nominal in a very narrow cone
+    beam.edge_from = std::min(spot->inner_angle, spot->outer_angle), beam.edge_to = spot->outer_angle;
+  }
   const double filled = beam.peak > 0 ? beam.flux / (std::numbers::pi * beam.peak) : 0;  // square of that half-angle
   beam.finest = std::clamp(kShareOfBeam * std::sqrt(filled), kFinest, kCoarsest);
   beam.is_even = std::holds_alternative<PointLuminaire>(luminaire.kind);
+  beam.depth = dot({std::abs(b.axis.x), std::abs(b.axis.y), std::abs(b.axis.z)}, b.upper - b.lower) / 2;
   return beam;
+}
+
+bool is_behind(const Luminaire& luminaire, const Beam& beam, const std::array<Vec3, 3>& corners) {
+  constexpr double kRightAngle = std::numbers::pi / 2 + 1e-5;
+  if (beam.half_angle > kRightAngle) return false;
+  return std::ranges::all_of(
+      corners, [&](const Vec3& c) { return dot(c - luminaire.position, beam.axis) <= 1e-9 - beam.depth; });
 }
 
 Vec3 direction_in(const Beam& beam, double u, double v) {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kWide = 0.5;  // size / distance, from which on the light of an even luminaire varies over a triangle
 constexpr double kOfAllFlux = 3e-5, kOfTriangle = 3e-3;  // that a cell may be wrong by: of what there is at most
-constexpr std::size_t kMostCells = 4096;
+constexpr double kFlat = 0.02;  // of the peak: bends no more than a formula for quadratic intensity knows
+constexpr std::size_t kMostCells = 1 << 15;
 
 /// Of the directions to the farthest corner and to the middle [rad].
 double radius(const SphericalTriangle& t, const Vec3& middle) {
@@ -36,19 +37,24 @@ double LuminaireView::intensity_towards(const Vec3& d) const {
 }
 
 LuminaireView::Cell LuminaireView::cell(const SphericalTriangle& to, const std::array<double, 3>& I) const {
-  Cell c{to, I, solid_angle(to), 0};
+  Cell c{to, I, solid_angle(to)};
   if (!(c.solid_angle > 0)) return c;
   // Exact where the intensity is quadratic.
   const double middle = beam_.is_even ? beam_.peak : intensity_towards(normalized(to[0] + to[1] + to[2]));
-  c.flux = c.solid_angle * (0.75 * middle + (I[0] + I[1] + I[2]) / 12);
+  const double corners = (I[0] + I[1] + I[2]) / 3;
+  c.flux = c.solid_angle * (0.75 * middle + 0.25 * corners);
+  c.bend = std::abs(middle - corners);
   return c;
 }
 
-bool LuminaireView::misses_beam(const Cell& c) const {
-  if (!(beam_.half_angle < std::numbers::pi)) return false;
+LuminaireView::Place LuminaireView::place_of(const Cell& c) const {
+  if (!(beam_.half_angle < std::numbers::pi)) return Place::inside;
   const Vec3 middle = normalized(c.to[0] + c.to[1] + c.to[2]);
   const double off = std::atan2(length(cross(middle, beam_.axis)), dot(middle, beam_.axis));
-  return off > beam_.half_angle + radius(c.to, middle);
+  const double half_width = radius(c.to, middle);
+  if (off > beam_.half_angle + half_width) return Place::outside;
+  const bool is_on_edge = off + half_width > beam_.edge_from && off - half_width < beam_.edge_to;
+  return is_on_edge && half_width > beam_.edge_to - beam_.edge_from ? Place::on_edge : Place::inside;
 }
 
 void LuminaireView::add(const Cell& whole) {
@@ -56,22 +62,24 @@ void LuminaireView::add(const Cell& whole) {
   while (!waiting_.empty()) {
     Cell c = waiting_.back();
     waiting_.pop_back();
-    if (!(c.solid_angle > 0) || misses_beam(c)) continue;
-    const bool is_full = cells_.size() + waiting_.size() >= kMostCells;
-    if (beam_.is_even || is_full || c.solid_angle * beam_.peak <= most_off_) {
-      if (c.flux > 0) cells_.push_back(c);
-      continue;
-    }
+    const Place place = place_of(c);
+    if (!(c.solid_angle > 0) || place == Place::outside) continue;
     std::size_t k = 0;  // the longest edge starts at corner k
     double longest = -1;
     for (std::size_t j = 0; j < 3; ++j)
       if (const double edge = length(c.to[(j + 1) % 3] - c.to[j]); edge > longest) longest = edge, k = j;
+    const bool is_full = cells_.size() + waiting_.size() >= kMostCells;
+    const bool is_wide = longest > 2 * beam_.finest || place == Place::on_edge;
+    const bool is_flat = !is_wide && c.bend < flat_;
+    if (beam_.is_even || is_full || is_flat || c.solid_angle * beam_.peak <= most_off_) {
+      if (c.flux > 0) cells_.push_back(c);
+      continue;
+    }
     const std::size_t next = (k + 1) % 3, apex = (k + 2) % 3;
     const Vec3 middle = normalized(c.to[k] + c.to[next]);
     const double I = intensity_towards(middle);
     const Cell first = cell({c.to[k], middle, c.to[apex]}, {c.I[k], I, c.I[apex]});
     const Cell second = cell({middle, c.to[next], c.to[apex]}, {I, c.I[next], c.I[apex]});
-    const bool is_wide = longest > 2 * beam_.finest;
     const bool is_known = !is_wide && std::abs(first.flux + second.flux - c.flux) <= most_off_;
     for (const Cell& half : {first, second})
       if (!is_known)
@@ -81,8 +89,9 @@ void LuminaireView::add(const Cell& whole) {
   }
 }
 
-double LuminaireView::look_from(const Vec3& q) {
+double LuminaireView::look_from(const Vec3& q, bool is_one_of_many) {
   q_ = q;
+  flat_ = is_one_of_many ? kFlat * beam_.peak : 0;
   cells_.clear();
   const double height = dot(normal_, q - corners_[0]);
   if (!(height > 0)) return 0;

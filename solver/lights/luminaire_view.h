@@ -24,7 +24,8 @@ class LuminaireView {
       : luminaire_(luminaire), beam_(beam), corners_(corners), normal_(normal) {}
 
   /// Looks from point q of the luminaire. Returns the flux [W], luminous mean; 0 from the plane and from behind it.
-  double look_from(const Vec3& q);
+  /// is_one_of_many: more roughly, for a mean over many points.
+  double look_from(const Vec3& q, bool is_one_of_many = false);
   /// Point of the triangle, distributed like the flux that look_from() found > 0 (where it is seen all but edge-on, in
   /// less than 1e-6 sr, nearly so).
   Vec3 lit_point(double u, double v) const;
@@ -33,11 +34,14 @@ class LuminaireView {
   struct Cell {
     SphericalTriangle to;
     std::array<double, 3> I;  ///< at the corners [W/sr]
-    double solid_angle, flux;
+    double solid_angle;
+    double flux = 0, bend = 0;  ///< bend: intensity at the middle less the mean of the corners [W/sr]
     double cumulative = 0;
   };
   Cell cell(const SphericalTriangle& to, const std::array<double, 3>& I) const;
-  bool misses_beam(const Cell& cell) const;
+  /// Where a cell lies in a beam: no light gets there, or the edge of a spot runs through it.
+  enum class Place { outside, inside, on_edge };
+  Place place_of(const Cell& cell) const;
   double intensity_towards(const Vec3& d) const;
   void add(const Cell& whole);
 
@@ -46,6 +50,7 @@ class LuminaireView {
   const std::array<Vec3, 3>& corners_;
   Vec3 normal_, q_;
   double most_off_ = 0;  ///< flux that a cell may be wrong by [W]
+  double flat_ = 0;      ///< bend that the formula for a cell is trusted with [W/sr]
   std::vector<Cell> cells_, waiting_;
 };
 

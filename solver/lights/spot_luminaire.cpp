@@ -16,10 +16,12 @@ Spectrum intensity(const SpotLuminaire& luminaire, const Vec3& d) {
 }
 
 Spectrum power(const SpotLuminaire& luminaire) {
-  // The ramp squared, integrated over the cosine: 1 over the inner cone, 1/3 over the width of the ramp.
+  // The ramp squared, integrated over the cosine: 1 over the inner cone, 1/3 over the width of the ramp. Of a cone so
+  // narrow that the ramp does not end, what there is of it.
   const double cos_outer = std::cos(luminaire.outer_angle), cos_inner = std::cos(luminaire.inner_angle);
-  const double width = std::max(1e-3, cos_inner - cos_outer), full_from = cos_outer + width;
-  return luminaire.intensity * (2 * std::numbers::pi * (1 - full_from + width / 3));
+  const double width = std::max(1e-3, cos_inner - cos_outer), whole = 1 - cos_outer;
+  const double mean = whole < width ? whole * whole * whole / (3 * width * width) : whole - width + width / 3;
+  return luminaire.intensity * (2 * std::numbers::pi * mean);
 }
 
 LightBounds bounds(const SpotLuminaire& luminaire, const Vec3& position) {

@@ -16,6 +16,7 @@
 #include "solver/hierarchy/sky_views.h"
 #include "solver/hierarchy/trace_links.h"
 #include "solver/illumination/direct.h"
+#include "solver/illumination/near_luminaires.h"
 #include "solver/methods/progressive.h"
 #include "solver/model/units.h"
 #include "solver/spaces/closure.h"
@@ -32,6 +33,10 @@ constexpr double kStakeByTolerance = 1e-4;    // flux at stake of `bf`, as a sha
 constexpr double kMostRays = 1.5e7;
 /// Scenes of few elements cost next to nothing, and their energy would hang on few rays: they get more of them.
 constexpr std::size_t kFewLeaves = 1500;
+/// The same where a luminaire is so near to a surface that elements near by get this share of all its light: a spot
+/// sends it on, and the energy hangs on the rays that meet the spot.
+constexpr std::size_t kFewLeavesBySpot = 6000;
+constexpr double kShareOfSpot = 0.25;
 constexpr int kMostOfOne = 1024;       // rays of one receiver; by judgement
 constexpr double kDarkestShare = 0.1;  // share of a space's area that is no brighter than its ground light
 
@@ -47,9 +52,10 @@ Quality coarse(const HierarchyOptions& o) {
           {.shadow_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
           1e-3};
 }
-Quality full(const HierarchyOptions& o, std::size_t leaves) {
+Quality full(const HierarchyOptions& o, std::size_t leaves, bool by_spot = false) {
   int bundle = o.bundle_rays, pairs = o.bright_rays;
-  for (std::size_t n = leaves; n < kFewLeaves && bundle < kMostOfOne; n *= 2) bundle *= 2, pairs *= 2;
+  for (std::size_t n = leaves; n < (by_spot ? kFewLeavesBySpot : kFewLeaves) && bundle < kMostOfOne; n *= 2)
+    bundle *= 2, pairs *= 2;
   return {{.bundle_rays = bundle, .bright_rays = pairs, .seed = o.seed},
           {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
           o.residual};
@@ -127,6 +133,19 @@ double receiver_size(const PatchSet& patches, double shortest_edge) {
   const double n = static_cast<double>(std::max<std::size_t>(patches.patch_count(), 1));
   const double area = patches.total_area();
   return std::max(shortest_edge, 0.5 * std::sqrt(area / n));
+}
+
+/// Whether much of the light of luminaires and suns falls on elements near luminaires.
+bool is_lit_by_spot(const HierarchicalSolution& s, const Lights& lights) {
+  if (lights.luminaires.empty()) return false;
+  const std::vector<bool> near = patches_near_luminaires(s.elements, lights);
+  double there = 0, all = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const double flux = s.elements.area[i] * luminous_mean(s.delta_light[i]);
+    all += flux;
+    if (near[i]) there += flux;
+  }
+  return there > kShareOfSpot * all;
 }
 
 std::string round_line(const char* what, const Solution& s, std::size_t leaves, std::size_t receivers) {
@@ -299,9 +318,11 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
         merges(mesh.leaf_count(), full(options, mesh.leaf_count()).links) ? kWorthAnotherMerged : kWorthAnother;
     if (static_cast<double>(mesh.leaf_count()) < worth_another * static_cast<double>(before)) break;
   }
-  if (going)
-    going = go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count()), "last round", last.get(),
-                              monitor, options.keep));
+  if (going) {
+    const bool by_spot = last && is_lit_by_spot(last->result, problem.lights);
+    going = go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count(), by_spot), "last round",
+                              last.get(), monitor, options.keep));
+  }
 
   HierarchicalSolution out;
   if (last) {

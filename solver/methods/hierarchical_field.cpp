@@ -18,6 +18,7 @@ namespace {
 struct DeltaLight {
   Spectrum mean;
   bool varies = false;
+  bool known = false;  ///< all corners were gathered; the rest holds only then
 };
 
 /// Points of leaves across which the edge of such light runs, parts between the ends of a penumbra apart.
@@ -51,6 +52,7 @@ DeltaLight delta_light(const ElementMesh& mesh, std::span<const std::uint32_t> l
   }
   found.mean *= 1 / share;
   found.varies = high - low > kVaries * high;
+  found.known = true;
   return found;
 }
 
@@ -88,8 +90,8 @@ Field without_delta_light(const VertexField& field) {
   return rest;
 }
 
-/// Sun and luminaire light of the leaves of elements that are near a luminaire, by leaf; of the others nothing. Leaves
-/// are looked at from the luminaire, as its peak may lie between their corners.
+/// Sun and luminaire light of some leaves, by leaf; of the others nothing. They are looked at from the luminaire, as
+/// its peak may lie between their corners.
 Field light_near_luminaires(const Problem& on_leaves, const std::vector<std::uint32_t>& near_leaves) {
   const Field found = delta_light_on(on_leaves, near_leaves, {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0});
   Field all(on_leaves.patches.patch_count(), on_leaves.patches.channels);
@@ -97,18 +99,31 @@ Field light_near_luminaires(const Problem& on_leaves, const std::vector<std::uin
   return all;
 }
 
-/// Those leaves, and their elements.
+/// Elements near luminaires whose corners do not tell their light.
 struct NearLuminaires {
   std::vector<bool> element;                ///< by element of the transport
   std::vector<std::uint32_t> among_leaves;  ///< numbers of their leaves
+  std::vector<std::uint32_t> halved;        ///< of those, the leaves of elements that were halved for what is shown
 };
 NearLuminaires near_luminaires(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
-                               const PatchSet& elements, const Lights& lights) {
-  NearLuminaires near{patches_near_luminaires(elements, lights), {}};
+                               const HierarchicalSolution& coarse, const VertexField& field, const Lights& lights) {
+  constexpr double kResolved = 0.03;
+  NearLuminaires near{patches_near_luminaires(coarse.elements, lights), {}, {}};
+  if (coarse.delta_light.value.empty()) near.element.assign(near.element.size(), false);
+  const std::vector<std::uint32_t> all = mesh.leaves();
   std::uint32_t leaf = 0;
-  for (std::size_t j = 0; j < transport_leaves.size(); ++j)
-    for (std::size_t k = mesh.leaves_under(transport_leaves[j]); k > 0; --k, ++leaf)
+  for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
+    const std::size_t leaves = mesh.leaves_under(transport_leaves[j]);
+    if (near.element[j]) {
+      const DeltaLight gathered = delta_light(mesh, std::span(all).subspan(leaf, leaves), field);
+      const double exact = luminous_mean(coarse.delta_light[j]), off = luminous_mean(gathered.mean) - exact;
+      near.element[j] = gathered.known && std::abs(off) > kResolved * exact;
+    }
+    for (std::size_t k = 0; k < leaves; ++k, ++leaf) {
       if (near.element[j]) near.among_leaves.push_back(leaf);
+      if (near.element[j] && leaves > 1) near.halved.push_back(leaf);
+    }
+  }
   return near;
 }
 
@@ -135,7 +150,7 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
   Field E = leaf_irradiance(mesh, field.E);
   if (coarse.delta_light.value.empty()) return E;
   const Field rest = leaf_irradiance(mesh, without_delta_light(field));
-  const Field near_light = light_near_luminaires(on_leaves, near.among_leaves);
+  const Field near_light = light_near_luminaires(on_leaves, near.halved);
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   const std::vector<bool> at_edge = points_at_edges(mesh, leaves, field);
   std::size_t begin = 0;
@@ -241,7 +256,7 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
                          std::to_string(mesh.leaf_count()) + " shown on " +
                          std::to_string(mesh.points().position.size()) + " points");
   if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
-  const NearLuminaires near = near_luminaires(mesh, transport_leaves, coarse.elements, problem.lights);
+  const NearLuminaires near = near_luminaires(mesh, transport_leaves, coarse, field, problem.lights);
   correct_flux(coarse, solution.E, mesh, !near.among_leaves.empty(), field);
   fill_unknown(mesh, transport_leaves, coarse.elements, solution.E, field);
   std::vector<bool> spot;

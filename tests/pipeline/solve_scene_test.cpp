@@ -5,11 +5,16 @@
 #include <chrono>
 #include <functional>
 #include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "pipeline/result_checks.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
+#include "solver/run/sound_result.h"
 
 namespace clerestory {
 namespace {
@@ -124,6 +129,125 @@ TEST(SolveScene, WarnsOnceHoweverManyRoundsATargetErrorTakes) {
   solve_scene(scene, settings, observer);
   EXPECT_EQ(
       std::ranges::count_if(observer.warnings, [](const std::string& w) { return w.find("'outside'") != w.npos; }), 1);
+}
+
+double smallest(const Field& x) { return *std::ranges::min_element(x.value); }
+void expect_nothing_negative(const Solved& s) {
+  EXPECT_GE(smallest(s.solution.E), 0);
+  EXPECT_GE(smallest(s.solution.B), 0);
+  EXPECT_GE(smallest(s.lightmap.E), 0);
+  EXPECT_GE(smallest(s.sensor_E), 0);
+}
+
+/// The box without glow, and a lamp of 10 W so far off the wall y = 0.
+Scene box_with_lamp(double distance) {
+  Scene scene = glowing_box();
+  scene.materials[0].exitance = Spectrum(0.0);
+  scene.lights.luminaires.push_back({"lamp", {1.7, distance, 1.1}, {}, PointLuminaire{Spectrum(10.0)}});
+  return scene;
+}
+
+TEST(SolveScene, KeepsTheEnergyOfALampHoweverNearToAWall) {
+  for (const Method method : {Method::hierarchical, Method::progressive, Method::gauss_seidel})
+    for (const double distance : {1e-6, 1e-3, 1e-2}) {
+      SCOPED_TRACE(testing::Message() << kMethodNames[static_cast<std::size_t>(method)] << ", " << distance << " m");
+      Settings settings = draft();
+      settings.solve.method = method;
+      const Solved s = solve_scene(box_with_lamp(distance), settings);
+      const double exact = 10 / (59.0 * (1 - 0.5));  // flux / (A (1 - rho))
+      double cells = 0, points = 0;
+      for (std::size_t i = 0; i < s.patches.patch_count(); ++i) {
+        cells += s.patches.area[i] * s.solution.E[i][0] / 59;
+        for (const std::uint32_t p : s.lightmap.corners[i]) points += s.patches.area[i] / 3 * s.lightmap.E[p][0] / 59;
+      }
+      EXPECT_NEAR(cells / exact, 1, 5e-3);
+      EXPECT_NEAR(points / exact, 1, 1e-2);  // lines between points lose a little where light bulges
+      EXPECT_NEAR(s.solution.energy.imbalance(), 0, 1e-3);
+      expect_nothing_negative(s);
+    }
+}
+
+TEST(SolveScene, LeavesNothingNegativeInANarrowWedgeUnderTheSky) {
+  // Two squares of 1 m that meet in an edge at 0.1 degrees: between them each hides nearly all of the sky.
+  Scene scene;
+  scene.file = "wedge";
+  scene.surfaces = {"wedge"};
+  Material& wall = scene.materials.emplace_back();
+  wall.name = "wall";
+  wall.reflectance = Spectrum(0.5);
+  wall.sides = 1;
+  const double h = 1.7453e-3;
+  for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, h}, {1, 1, h}})
+    scene.polygons.add_vertex(v);
+  for (const auto& face : {std::array{0, 1, 2, 3}, {0, 3, 5, 4}}) {
+    for (const int corner : face) scene.polygons.add_corner(static_cast<std::uint32_t>(corner));
+    scene.polygons.end_face(MaterialId{std::size_t{0}}, SurfaceId{std::size_t{0}});
+  }
+  scene.lights.sky = Sky{.model = SkyModel::uniform, .horizontal_irradiance = Spectrum(50.0)};
+  const Solved s = solve_scene(scene, draft());
+  EXPECT_GT(*std::ranges::max_element(s.lightmap.E.value), 10);  // the side that looks up
+  EXPECT_GE(smallest(s.solution.E), 0);
+  EXPECT_GE(smallest(s.solution.B), 0);
+  EXPECT_GE(smallest(s.lightmap.E), 0);
+}
+
+bool any_says(const std::vector<std::string>& warnings, const std::string& words) {
+  return std::ranges::any_of(warnings, [&](const std::string& w) { return w.find(words) != w.npos; });
+}
+
+TEST(WarnAboutResult, SaysHowMuchLightIsMissingOrTooMuch) {
+  Solved solved = solve_scene(glowing_box(), draft());
+  Listener quiet;
+  warn_about_result(solved, quiet);
+  EXPECT_TRUE(quiet.warnings.empty());
+  solved.solution.energy = {.emitted = 20, .absorbed = 16, .escaped = 1};
+  Listener missing;
+  warn_about_result(solved, missing);
+  EXPECT_TRUE(any_says(missing.warnings, "15.0 % of the light is missing from this result (537 lm of 3580 lm)"));
+  solved.solution.energy.absorbed = 22;
+  Listener too_much;
+  warn_about_result(solved, too_much);
+  EXPECT_TRUE(any_says(too_much.warnings, "15.0 % more light than was sent"));
+  solved.solution.energy.absorbed = 18.9;
+  solved.error = MeasuredError{.rms_relative = 0.3, .p95_relative = 0.2, .samples = 64, .confidence = 0.1};
+  Listener error;
+  warn_about_result(solved, error);
+  ASSERT_EQ(error.warnings.size(), 1u);
+  EXPECT_TRUE(any_says(error.warnings, "the measured error is 30.0 % rms"));
+}
+
+TEST(SolveScene, SaysThatALampStandsInsideOfASolid) {
+  Scene scene = box_with_lamp(1.5);
+  scene.surfaces.push_back("table");
+  for (int c = 0; c < 8; ++c) scene.polygons.add_vertex({c & 1 ? 3.0 : 2.0, c & 2 ? 2.0 : 1.0, c & 4 ? 0.75 : 0.70});
+  for (const auto& face : {std::array{8, 10, 11, 9},
+                           {12, 13, 15, 14},
+                           {8, 9, 13, 12},
+                           {10, 14, 15, 11},
+                           {8, 12, 14, 10},
+                           {9, 11, 15, 13}}) {
+    for (const int corner : face) scene.polygons.add_corner(static_cast<std::uint32_t>(corner));
+    scene.polygons.end_face(MaterialId{std::size_t{0}}, SurfaceId{std::size_t{1}});
+  }
+  Listener before;
+  solve_scene(scene, draft(), before);
+  EXPECT_FALSE(any_says(before.warnings, "inside of the solid"));
+  scene.lights.luminaires.push_back({"lost", {2.5, 1.5, 0.73}, {}, PointLuminaire{Spectrum(5.0)}});
+  Listener observer;
+  solve_scene(scene, draft(), observer);
+  EXPECT_TRUE(
+      any_says(observer.warnings, "luminaire 'lost' at (2.500, 1.500, 0.7300) stands inside of the solid 'table'"));
+}
+
+TEST(RequireSound, RefusesWhatIsNoNumberOrNegativeAndClearsRounding) {
+  Field field(3, 1);
+  field.value = {1, -1e-7, 0};
+  require_sound(field, "light");
+  EXPECT_EQ(field.value[1], 0);
+  field.value = {1, -0.01, 0};
+  EXPECT_THROW(require_sound(field, "light"), std::logic_error);
+  field.value = {1, std::numeric_limits<double>::quiet_NaN(), 0};
+  EXPECT_THROW(require_sound(field, "light"), std::logic_error);
 }
 
 }  // namespace

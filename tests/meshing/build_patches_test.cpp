@@ -315,7 +315,7 @@ SceneMaker ceiling_and_panel(double gap, MaterialId& ceiling, MaterialId& panel,
 TEST(BuildPatches, SheetsAHairApartStayTwoHoweverSmallTheGap) {
   for (const double gap : {-1e-3, -1e-6, -1e-7, 2e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-3})
     for (const bool same_size : {false, true}) {
-      SCOPED_TRACE(testing::Message() << "gap " << gap << (same_size ? ", same size" : ""));
+      SCOPED_TRACE(::testing::Message() << "gap " << gap << (same_size ? ", same size" : ""));
       MaterialId ceiling, panel;
       SceneMaker maker =
           same_size ? ceiling_and_panel(gap, ceiling, panel, 0, 4) : ceiling_and_panel(gap, ceiling, panel);

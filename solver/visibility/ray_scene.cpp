@@ -20,7 +20,7 @@ constexpr int kMostReflections = 64;     // of one ray; what is left is lost
 constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of luminaires
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kLift = 5e-7;       // of the diameter: a few units in the last place at the rim of the scene
-constexpr double kFineLift = 1e-10;  // of the diameter: meshing keeps nothing apart that is nearer
+constexpr double kFineLift = 1e-12;  // of the diameter: far above double's rounding, far below what meshing keeps apart
 
 struct Device {
   RTCDevice handle = rtcNewDevice("set_affinity=0");
@@ -172,7 +172,8 @@ struct RayScene::Impl {
     hit.distance = hit.first = double{r.ray.tfar};
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       hit.triangle = TriangleId{opaque.of_primitive[r.hit.primID]};
-      if (tight.is_tight(hit.triangle)) return fine_leg(patches, ray);
+      if (tight.any() && (tight.is_tight(hit.triangle) || tight.contains(hit.position(ray))))
+        return fine_leg(patches, ray);
       const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
       hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{r.hit.u}, double{r.hit.v});
     }
@@ -336,7 +337,9 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       hit.distance = hit.first = double{packet.ray.tfar[k]};
       if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
         hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
-      if (impl_->tight.is_tight(hit.triangle) || impl_->tight.contains(rays[first + k].origin)) {
+      const Ray& sent = rays[first + k];
+      if (has_tight_places() && (impl_->tight.is_tight(hit.triangle) || is_tight(sent.origin) ||
+                                 (!hit.escaped() && is_tight(hit.position(sent))))) {
         hit = impl_->fine_leg(patches, rays[first + k]);
         if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], hit);
         continue;

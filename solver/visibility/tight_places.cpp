@@ -8,25 +8,23 @@
 namespace clerestory {
 namespace {
 
-constexpr double kReach = 2;        ///< lifts: what is further apart than that a lifted end cannot pass
-constexpr double kBesideEdge = 10;  ///< reaches: surfaces that meet there at atan(1 / 10) or more are far enough apart
-constexpr double kShareOfWidth = 0.03;  ///< of a triangle's inner radius that may be worse, where it is small
-constexpr double kRounding = 0.1;       ///< reaches: what float moves a point sideways
+constexpr double kReach = 2;        // lifts: what is further apart than that a lifted end cannot pass
+constexpr double kBesideEdge = 10;  // reaches: from there on surfaces that meet at atan(1 / 10) are far enough apart
+constexpr double kShareOfHeight = 6e-4;  // of a triangle over its edge: vertices are evaluated that near to it
+constexpr double kRounding = 0.05;       // reaches: what float moves a point sideways
 
-/// The space over and under a triangle, up to `reach` from it, short of its edges by `inset`.
+/// The space over and under a triangle, up to `reach` from it, short of its edges by its insets.
 class Prism {
  public:
   Prism(const std::array<Vec3, 3>& corner, double reach) : corner_(corner), reach_(reach) {
     const Vec3 n = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const double twice_area = length(n);
     normal_ = normalized(n);
-    double around = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 edge = corner[(k + 1) % 3] - corner[k];
       inward_[k] = normalized(cross(normal_, edge));
-      around += length(edge);
+      inset_[k] = std::min(kBesideEdge * reach, kShareOfHeight * twice_area / length(edge)) - kRounding * reach;
     }
-    inset_ = std::min(kBesideEdge * reach, kShareOfWidth * twice_area / around) - kRounding * reach;
   }
   bool has_area() const { return length(normal_) > 0.5; }
 
@@ -39,7 +37,8 @@ class Prism {
     }
     if (low > reach_ || high < -reach_) return false;
     for (std::size_t k = 0; k < 3; ++k)
-      if (depth(k, other[0]) < inset_ && depth(k, other[1]) < inset_ && depth(k, other[2]) < inset_) return false;
+      if (depth(k, other[0]) < inset_[k] && depth(k, other[1]) < inset_[k] && depth(k, other[2]) < inset_[k])
+        return false;
     return !clip(other).empty();
   }
 
@@ -60,14 +59,15 @@ class Prism {
     };
     keep([&](const Vec3& p) { return reach_ - dot(normal_, p - corner_[0]); });
     keep([&](const Vec3& p) { return reach_ + dot(normal_, p - corner_[0]); });
-    for (std::size_t k = 0; k < 3; ++k) keep([&](const Vec3& p) { return depth(k, p) - inset_; });
+    for (std::size_t k = 0; k < 3; ++k) keep([&](const Vec3& p) { return depth(k, p) - inset_[k]; });
     return polygon;
   }
 
   std::array<Vec3, 3> corner_;
-  double reach_, inset_;
+  double reach_;
   Vec3 normal_;
   std::array<Vec3, 3> inward_;  ///< unit normals of the edges within the plane
+  std::array<double, 3> inset_;
 };
 
 }  // namespace

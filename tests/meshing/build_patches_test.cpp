@@ -7,7 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include "meshing/clean.h"
 #include "meshing/make_lightmap.h"
+#include "meshing/overlaps.h"
+#include "meshing/plane_groups.h"
+#include "meshing/stacked_faces.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -315,7 +319,7 @@ SceneMaker ceiling_and_panel(double gap, MaterialId& ceiling, MaterialId& panel,
 TEST(BuildPatches, SheetsAHairApartStayTwoHoweverSmallTheGap) {
   for (const double gap : {-1e-3, -1e-6, -1e-7, 2e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-3})
     for (const bool same_size : {false, true}) {
-      SCOPED_TRACE(testing::Message() << "gap " << gap << (same_size ? ", same size" : ""));
+      SCOPED_TRACE(::testing::Message() << "gap " << gap << (same_size ? ", same size" : ""));
       MaterialId ceiling, panel;
       SceneMaker maker =
           same_size ? ceiling_and_panel(gap, ceiling, panel, 0, 4) : ceiling_and_panel(gap, ceiling, panel);
@@ -339,32 +343,31 @@ TEST(BuildPatches, SheetsInOnePlaneAreJoinedStill) {
     const auto [p, report] = mesh(maker, 0.5);
     expect_sound(p);
     EXPECT_NEAR(surface_area(p), 16, 16 * kRounding);
-    EXPECT_EQ(report.overlapping_regions, 1u);
+    EXPECT_GT(report.overlapping_regions, 0u);
   }
 }
 
-TEST(BuildPatches, SheetsThatAnInexactModelJoinsShowTheOutermostOnEachSide) {
-  // What makes it inexact: boxes turned on each other, corners rounded to millimetres.
-  MaterialId ceiling, panel;
-  for (const double gap : {-2e-6, 2e-6}) {
-    SceneMaker maker = ceiling_and_panel(gap, ceiling, panel);
-    const MaterialId other = maker.material("other");
-    const std::size_t first = maker.scene().polygons.vertices.size();
-    for (int i = 0; i < 12; ++i) maker.box({0.7 * i, 0.5 * i, 0}, {0.7 * i + 8, 0.5 * i + 10, 3.0 + (i % 3)}, other);
-    auto& vertices = maker.scene().polygons.vertices;
-    for (std::size_t v = first; v < vertices.size(); ++v) {
-      const Vec3 turned{std::cos(0.3) * vertices[v].x - std::sin(0.3) * vertices[v].y,
-                        std::sin(0.3) * vertices[v].x + std::cos(0.3) * vertices[v].y, vertices[v].z};
-      vertices[v] = {std::round(turned.x * 1e3) / 1e3 + 30, std::round(turned.y * 1e3) / 1e3, turned.z};
+TEST(BuildPatches, SheetsThatAreJoinedForWantOfExactnessShowTheOutermostOnEachSide) {
+  // As when no finer tolerance lets the lines of a model meet.
+  for (const double gap : {-1e-6, 1e-6})
+    for (const bool is_glass : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << gap << (is_glass ? " glass" : ""));
+      MaterialId ceiling, panel;
+      SceneMaker maker = ceiling_and_panel(gap, ceiling, panel);
+      if (is_glass) maker.edit(panel).kind = MaterialKind::glass;
+      MeshReport report;
+      const FaceComplex complex = clean(maker.scene(), kTolerances[0], report);
+      const std::vector<PlaneGroup> groups = group_by_plane(complex);
+      ASSERT_EQ(groups.size(), 1u);
+      EXPECT_NEAR(least_gap(complex, groups) * complex.size, std::abs(gap), 1e-8);
+      const Covering covering(complex, groups[0], maker.scene().materials);
+      const auto found = covering.at(groups[0].plane.flatten(Vec3{0.01, 0.02, 0}), 0.01);
+      ASSERT_TRUE(found);
+      const bool panel_above = !is_glass && (gap > 0) == (groups[0].plane.n.z > 0);
+      const bool panel_below = !is_glass && !panel_above;
+      EXPECT_EQ(found->sheet.material_above == panel, panel_above);
+      EXPECT_EQ(found->sheet.material_below == panel, panel_below);
     }
-    const auto [p, report] = build_patches(maker.scene());
-    ASSERT_GT(report.tolerance, 1e-5);  // far above the gap
-    const Side up = kFront, down = kBack;
-    EXPECT_NEAR(area_of(p, panel, up), gap > 0 ? 4 : 0, 1e-4);
-    EXPECT_NEAR(area_of(p, panel, down), gap > 0 ? 0 : 4, 1e-4);
-    EXPECT_NEAR(area_of(p, ceiling, up), gap > 0 ? 12 : 16, 1e-4);
-    EXPECT_NEAR(area_of(p, ceiling, down), gap > 0 ? 16 : 12, 1e-4);
-  }
 }
 
 TEST(BuildPatches, APaneBeforeAWallDoesNotOpenIt) {

@@ -171,7 +171,9 @@ TEST(LightSampler, DensityIsTheOneOfTheSampleThatWasDrawn) {
         const LightSample s = draw(lit.sampler, at, random, bright_patches_only);
         if (!s.patch.valid()) continue;
         ++found;
-        const Vec3 normal = lit.patches.normal[s.patch], d = s.end - normal * lit.rays.lift() - at.p;
+        const Vec3 normal = lit.patches.normal[s.patch];
+        const double lifted = dot(normal, s.end - lit.patches.corner_positions(s.patch)[0]);
+        const Vec3 d = s.end - normal * lifted - at.p;
         const double cos_q = -dot(normal, normalized(d));
         const double density = lit.sampler.density(s.patch, at.p, at.n, length(d), cos_q, bright_patches_only);
         EXPECT_NEAR(density / s.density, 1, 1e-9 / cos_q) << count;

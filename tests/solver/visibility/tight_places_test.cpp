@@ -88,7 +88,9 @@ TEST(RaysInTightPlaces, MeetTheSheetThatIsFirstWhateverTheGap) {
         const Vec3 between = rays.off_surface(x + Vec3{0, 0, z}, {0, 0, 1});
         EXPECT_LT(between.z, z + gap);
         const Hit other = rays.first_hit(patches, {between, d});
-        if (other.distance < 0.1) EXPECT_EQ(height_of(other), z + gap);
+        if (other.distance < 0.1) {
+          EXPECT_EQ(height_of(other), z + gap);
+        }
         EXPECT_FALSE(rays.visible(between, between + Vec3{0, 0, 0.2}));
         EXPECT_TRUE(rays.visible(rays.off_surface(x + Vec3{0, 0, z}, {0, 0, -1}), x + Vec3{0, 0, z - 0.2}));
         SegmentPacket segments;

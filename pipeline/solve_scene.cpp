@@ -62,7 +62,9 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         // -> how wrong both are, as far as there is time: a little after the limit, too.
         const ErrorEffort spend = effort(options.accuracy, options.tighten).error;
         Monitor measuring = monitor;
-        measuring.deadline = std::max(measuring.deadline, std::chrono::steady_clock::now() + kTimeToMeasure);
+        if (monitor.is_late())
+          measuring.deadline =
+              std::min(std::chrono::steady_clock::now() + kTimeToMeasure, monitor.deadline + 3 * kTimeToMeasure);
         out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, measuring));
         if (at_planes.complete())
           out.error_sensors = if_measured(measure_sensor_error(problem, sensors.planes, at_planes.E, spend,

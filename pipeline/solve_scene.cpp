@@ -50,6 +50,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
                                      settings.debug ? &out.debug : nullptr);
         Solution& solution = solved.solution;
         if (solved.elements.patch_count() > 0) patches = std::move(solved.elements);  // the problem is about these now
+        monitor.report(sensors.planes.empty() ? "error" : "sensors", 0);  // ends the last stage of the solve
         lap.add_to(seconds.gather);
 
         // -> irradiance at sensors.

@@ -1,7 +1,9 @@
 #include "apps/arguments.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
@@ -29,7 +31,7 @@ std::string thread_number(const std::string& text) {
 std::string seed_number(const std::string& text) {
   const bool digits = !text.empty() && text.find_first_not_of("0123456789") == text.npos;  // "-1" would wrap around
   long long value = 0;
-  if (digits && CLI::detail::lexical_cast(text, value)) return {};
+  if (digits && std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{}) return {};
   return text + " is not a whole number from 0 to 9223372036854775807";
 }
 

@@ -78,6 +78,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
                                      settings.debug ? &out.debug : nullptr);
         Solution& solution = solved.solution;
         if (solved.elements.patch_count() > 0) patches = std::move(solved.elements);  // the problem is about these now
+        monitor.report(sensors.planes.empty() ? "error" : "sensors", 0);  // ends the last stage of the solve
         lap.add_to(seconds.gather);
 
         // -> irradiance at sensors.
@@ -90,7 +91,9 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         // -> how wrong both are, as far as there is time: a little after the limit, too.
         const ErrorEffort spend = effort(options.accuracy, options.tighten).error;
         Monitor measuring = monitor;
-        measuring.deadline = std::max(measuring.deadline, std::chrono::steady_clock::now() + kTimeToMeasure);
+        if (monitor.is_late())
+          measuring.deadline =
+              std::min(std::chrono::steady_clock::now() + kTimeToMeasure, monitor.deadline + 3 * kTimeToMeasure);
         out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, measuring));
         if (at_planes.complete()) {
           const auto [planes, E] = without(*buried, sensors.planes, at_planes.E);

@@ -55,7 +55,7 @@ void say_why(ExitCode code, const Solved& solved, Console& console) {
 }
 
 /// What a time limit may go over before there is a result: some of that is worth more than none.
-constexpr double kGrace = 1;
+constexpr double kGrace = 1.5;
 
 void end_without_result_after(const std::optional<double>& time_limit, const Console& console) {
   constexpr double kNeverSeconds = 1e8;

@@ -112,8 +112,9 @@ PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, 
                    stage, monitor);
 }
 
-/// What stopped solves take to show a rough value at their sensors.
-constexpr std::chrono::milliseconds kTimeForSensors{500};
+/// What stopped solves take to show a rough value at their sensors, when they are more than take that long.
+constexpr std::chrono::seconds kTimeForSensors{1};
+constexpr std::size_t kQuickSensors = 2'000;
 
 }  // namespace
 
@@ -198,16 +199,16 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
                                       std::span<const SensorPoint> points, const SolveOptions& options,
                                       const Monitor& monitor) {
   const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
-  const auto by = [&](const Effort& e, const Monitor& m) {
-    return irradiance_at(problem, solution, points.size(), point_of, e.sensors, e.paths_of_sensor, kPathsOfSensor,
-                         "sensors", options, m);
-  };
-  PointIrradiance at_points = by(effort_of(options), monitor);
+  const Effort e = effort_of(options);
+  PointIrradiance at_points = irradiance_at(problem, solution, points.size(), point_of, e.sensors, e.paths_of_sensor,
+                                            kPathsOfSensor, "sensors", options, monitor);
   if (!at_points.complete()) {
+    // Paths have no bound on their length; looking at the elements has one, and serves any method when time is up.
     Monitor patient;
     patient.progress = monitor.progress;
-    patient.deadline = std::chrono::steady_clock::now() + kTimeForSensors;
-    at_points = by(effort(Accuracy::draft, options.tighten), patient);
+    if (points.size() > kQuickSensors) patient.deadline = std::chrono::steady_clock::now() + kTimeForSensors;
+    const GatherPattern rough(effort(Accuracy::draft, options.tighten).sensors, options.seed);
+    at_points = gather_at(gather_illumination(problem, solution.B), points.size(), point_of, rough, "sensors", patient);
   }
   require_sound(at_points.E, "irradiance at the sensors");
   return at_points;

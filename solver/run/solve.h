@@ -54,7 +54,7 @@ SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_e
 Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor = {});
 
 /// Irradiance at each sensor point itself, by gather_point(), or by paths where these are the method. When the monitor
-/// stops it, half a second is spent on rough values; where that is not enough for all points, the answer is not
+/// stops it, rough values are looked up at the elements; where a second is not enough for all points, the answer is not
 /// complete.
 ///
 /// problem  with the elements that the solution belongs to. points: in the scene's frame.

@@ -72,11 +72,11 @@ class RowLight {
   std::vector<std::shared_ptr<const SkyRadiance>> sky_;
 };
 
-/// Of all rows. returns N x lanes [W/m2]. No rays. Threads: same bits for any thread count.
+/// Of all rows. returns N x lanes, none negative [W/m2]. No rays. Threads: same bits for any thread count.
 Field irradiance(const LightRows& rows, const RowLight& light);
 
 /// Scales what layers give at a receiver so that they sum to E, which all of them give together. Where E is more than a
-/// sum of rays (means put right, values clamped) layers share that in proportion.
+/// sum of rays (means put right, values clamped) layers share that in proportion; none gives less than nothing.
 void divide_among_layers(const Spectrum& E, int channels, std::span<double> lanes);
 
 /// Lanes of receiver i.

@@ -98,7 +98,7 @@ class RayScene {
 
   /// Where a ray starts or ends at the place p of a surface with unit normal n on the ray's side: lifted so far that
   /// rounding cannot put it behind the surface, and never so far that it passes another. That is lift() where no other
-  /// surface is near; in tight places (tight_places.h) 1e-10 of the diagonal, and rays that start, end or land there
+  /// surface is near; in tight places (tight_places.h) 1e-12 of the diagonal, and rays that start, end or land there
   /// are traced in double precision (fine_rays.h).
   Vec3 off_surface(const Vec3& p, const Vec3& n) const;
   /// Where rays start for a point in the air, p itself unless a surface is nearer than rounding: then on p's side of

@@ -52,6 +52,11 @@ double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n) {
   return F;
 }
 
+bool is_slit(const LightArea& opening) {
+  constexpr double kNarrow = 0.02;  // of its length: windows are wider
+  return opening.area < kNarrow * 4 * opening.radius * opening.radius;
+}
+
 Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {
   const auto u = sobol4(k, key);
   double left = sobol4(k, key + 1)[0] * opening.area;

@@ -44,14 +44,6 @@ class OutlineFinder {
         group_of_[f] = g;
         area += area_of(f);
       }
-      Vec3 low{Box::kHuge, Box::kHuge, 0}, high{-Box::kHuge, -Box::kHuge, 0};
-      for (const std::uint32_t f : groups[g].faces)
-        for (const Vec3& p : corners(f)) {
-          const Point2 q = groups[g].plane.flatten(p);
-          low = {std::min(low.x, q.x), std::min(low.y, q.y), 0};
-          high = {std::max(high.x, q.x), std::max(high.y, q.y), 0};
-        }
-      extent_.push_back({low, high});
       if (!(area >= kLargePlane * element * element)) continue;
       for (const std::uint32_t f : groups[g].faces)
         if (material_of(f).receives()) large_.push_back(f);
@@ -175,17 +167,17 @@ class OutlineFinder {
       const Vec3 to_apex = vertex(apex) - vertex(e.a);
       const double rise = dot(normalized(to_apex - along * dot(to_apex, along)), up);
       if (rise < -kLevel) return false;
-      stands = stands || (rise > kSteep && reach(group_of_[f], middle, up) >= kDeep * gap);
+      stands = stands || (rise > kSteep && reaches(group_of_[f], f, middle, up, kDeep * gap));
     }
     return stands;
   }
-  /// How far a group reaches from p in a direction, by a rectangle around it.
-  double reach(std::uint32_t group, const Vec3& p, const Vec3& direction) const {
-    const Plane& plane = groups_[group].plane;
-    const Box& box = extent_[group];
-    const double t = dot(plane.t, direction), b = dot(plane.b, direction);
-    return dot(plane.origin - p, direction) + (t > 0 ? box.upper.x : box.lower.x) * t +
-           (b > 0 ? box.upper.y : box.lower.y) * b;
+  /// Whether a group reaches so far from p in a direction; mostly its face there does.
+  bool reaches(std::uint32_t group, std::uint32_t face, const Vec3& p, const Vec3& direction, double far) const {
+    const auto does = [&](std::uint32_t f) {
+      const auto c = corners(f);
+      return std::any_of(c.begin(), c.end(), [&](const Vec3& x) { return dot(x - p, direction) >= far; });
+    };
+    return does(face) || std::any_of(groups_[group].faces.begin(), groups_[group].faces.end(), does);
   }
 
   /// The part of a segment in a face's plane that lies in the face.
@@ -305,7 +297,6 @@ class OutlineFinder {
   std::span<const Material> materials_;
   double element_;
   std::vector<std::uint32_t> group_of_;
-  std::vector<Box> extent_;           ///< of groups, in the frames of their planes
   std::vector<std::uint32_t> large_;  ///< faces of planes that are worth a line
   std::vector<Edge> edges_;
   std::vector<std::uint32_t> faces_;  ///< by edge

@@ -287,9 +287,7 @@ class StripFinder {
     if (std::isfinite(most) && std::min({w0, w1, middle}) > rays_.lift() &&
         std::abs(middle - (w0 + w1) / 2) < std::max(1e-3 * most, rays_.lift())) {
       const double slope = (w1 - w0) / (1 - 2 * kInset);
-      // Short of what stands opposite, or rays that are to look through would start behind it.
-      const double at_a = std::max(0.0, w0 - kInset * slope - rays_.lift()),
-                   at_b = std::max(0.0, w1 + kInset * slope - rays_.lift());
+      const double at_a = std::max(0.0, w0 - kInset * slope), at_b = std::max(0.0, w1 + kInset * slope);
       gaps.push_back({{edge.a, edge.b, edge.b + out * at_b, edge.a + out * at_a}, false});
     } else if (divisions > 0) {
       divide(plane, {edge.a, at(0.5)}, out, divisions - 1, gaps);

@@ -22,6 +22,7 @@ constexpr double kSeesSky = 0.1;                   ///< share of the rays out th
 constexpr double kIndoors = 0.2;                   ///< most of the rays in that do
 constexpr double kWideOpen = 0.5;                  ///< and those that do so mostly are preferred
 constexpr double kDarker = 0.1;                    ///< of what one side of a slit sees: the other sees less
+constexpr double kDarkerByFew = 0.5;               ///< the same, to sift
 constexpr int kWalks = 8;                          ///< for each of those rays, to judge how bright a side is
 constexpr std::size_t kFewLuminaires = 16;         ///< that are asked for it
 constexpr double kNew = 0.1;                       ///< of the rays out, those that see sky which no other opening shows
@@ -61,7 +62,8 @@ class Judge {
         std::swap(front, back);
       }
       o.brightness = back;
-      if (front > kDarker * back) return false;
+      // A few walks may find the way out through the slit itself.
+      if (front > (count == kRays ? kDarker : kDarkerByFew) * back) return false;
     }
     return o.brightness > 0;
   }

@@ -12,9 +12,9 @@
 namespace clerestory {
 namespace {
 
-// By judgement. Elements are halved where light varies, down to an eighth of the longest edge: what stands further off
-// than a quarter has its shadow there anyway.
-constexpr double kNear = 0.25;        ///< of an element: an edge further off is no end of anything at that plane
+// By judgement. Elements are halved where light varies, down to an eighth of the longest edge: they find the shadow of
+// what stands further off by themselves.
+constexpr double kNear = 0.125;       ///< of an element: an edge further off is no end of anything at that plane
 constexpr double kSteep = 0.34;       ///< sine of the angle at which a surface leaves the plane
 constexpr double kLevel = 0.1;        ///< sine of the angle up to which a surface leads along the plane
 constexpr double kDeep = 4;           ///< of the gap: how far the surface reaches away, at least

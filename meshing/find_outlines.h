@@ -23,7 +23,7 @@ struct Outline {
 /// the wall: it would carry light through. So the ends of surfaces are projected onto the planes that they come near,
 /// for lines to be drawn there like contacts.
 ///
-/// An edge is projected onto a plane when it is nearer than a quarter of an element and all that hangs on it leads away
+/// An edge is projected onto a plane when it is nearer than an eighth of an element and all that hangs on it leads away
 /// from the plane or along it, something steeply (20 degrees) and four times as far as the edge is off; when nothing
 /// lies between on both sides of it; and when it is part of an outline half an element wide. Where the end of such an
 /// edge lies on a third surface, that one gets the line to the plane: it parts the surface's light as well. Planes of

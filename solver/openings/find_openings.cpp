@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "solver/geometry/polygon.h"
@@ -25,6 +26,8 @@ constexpr double kDarker = 0.1;                    ///< of what one side of a sl
 constexpr double kDarkerByFew = 0.5;               ///< the same, to sift
 constexpr int kWalks = 8;                          ///< for each of those rays, to judge how bright a side is
 constexpr std::size_t kFewLuminaires = 16;         ///< that are asked for it
+constexpr std::size_t kMostSlits = 500;            ///< that are judged by walks, the largest
+constexpr std::size_t kMostDarkSlits = 100;        ///< of those kept through which no sky is seen
 constexpr double kNew = 0.1;                       ///< of the rays out, those that see sky which no other opening shows
 constexpr std::size_t kMostCorners = 256;          ///< of an outline; a window has few
 constexpr std::size_t kMostCandidates = 5000;      ///< good ones, the best
@@ -63,9 +66,9 @@ class Judge {
       }
       o.brightness = back;
       // A few walks may find the way out through the slit itself.
-      if (front > (count == kRays ? kDarker : kDarkerByFew) * back) return false;
+      if (!(back > 0) || front > (count == kRays ? kDarker : kDarkerByFew) * back) return false;
     }
-    return o.brightness > 0;
+    return true;
   }
 
   /// Turns the normal into the room. returns the share of rays out that see sky; 0: no opening between a room and it.
@@ -169,6 +172,8 @@ LightArea opening_across(const Gap& gap) {
 
 std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights) {
   if (patches.triangle_count() > kMostTriangles) return {};
+  const auto is_black = [](double M) { return M == 0; };
+  if (lights.empty() && std::ranges::all_of(patches.M.value, is_black)) return {};
   const SkyRadiance sky(lights);
   const Judge judge(patches, rays, lights, sky);
   struct Candidate {
@@ -183,12 +188,21 @@ std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& ra
     if (o.area > 0 && !o.triangles.empty() && (lights.sky || is_slit(o)))
       candidates.push_back({std::move(o), gap.is_hole});
   }
+  std::vector<double> slits;
+  for (const Candidate& c : candidates)
+    if (is_slit(c.opening)) slits.push_back(c.opening.area);
+  double smallest_slit = 0;
+  if (slits.size() > kMostSlits) {
+    std::nth_element(slits.begin(), slits.begin() + kMostSlits, slits.end(), std::greater<>());
+    smallest_slit = slits[kMostSlits];
+  }
   parallel_for(candidates.size(), 8, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       Candidate& c = candidates[k];
       const std::uint64_t key = stream_key(kGapRays, k);
       if (lights.sky) c.sky = judge.judge(c.opening, key);
-      c.is_dark_slit = !(c.sky > 0) && is_slit(c.opening) && judge.judge_slit(c.opening, key);
+      c.is_dark_slit =
+          !(c.sky > 0) && c.opening.area > smallest_slit && is_slit(c.opening) && judge.judge_slit(c.opening, key);
     }
   });
   std::erase_if(candidates, [](const Candidate& c) { return !(c.sky > 0) && !c.is_dark_slit; });
@@ -200,9 +214,13 @@ std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& ra
   });
   if (candidates.size() > kMostCandidates) candidates.erase(candidates.begin() + kMostCandidates, candidates.end());
   std::vector<LightArea> openings;
-  for (std::size_t k = 0; k < candidates.size() && openings.size() < kMostOpenings; ++k)
-    if (judge.shows_more(candidates[k].opening, openings, stream_key(kGapsSifted, k)))
-      openings.push_back(std::move(candidates[k].opening));
+  std::size_t dark_slits = 0;
+  for (std::size_t k = 0; k < candidates.size() && openings.size() < kMostOpenings; ++k) {
+    if (candidates[k].is_dark_slit && dark_slits == kMostDarkSlits) break;
+    if (!judge.shows_more(candidates[k].opening, openings, stream_key(kGapsSifted, k))) continue;
+    dark_slits += candidates[k].is_dark_slit;
+    openings.push_back(std::move(candidates[k].opening));
+  }
   // The inner face of a thick wall may have come before the outer one.
   for (std::size_t k = openings.size(); k > 0; --k) {
     LightArea opening = std::move(openings[k - 1]);

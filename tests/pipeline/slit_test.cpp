@@ -51,9 +51,9 @@ Scene two_rooms(double gap) {
 
 /// Mean illuminance [lx] of the five points in the dark room.
 double light_over_the_partition(double gap) {
-  const Solved solved = solve_scene(two_rooms(gap), {.solve = {.accuracy = Accuracy::draft}});
+  const Solved solved = solve_scene(two_rooms(gap), {.solve = {.accuracy = Accuracy::draft}, .max_element = 0.25});
   double sum = 0;
-  for (std::size_t i = 0; i < 5; ++i) sum += illuminance_lux(solved.sensor_E[0][i]) / 5;
+  for (std::size_t i = 0; i < 5; ++i) sum += photometric(solved.sensor_E[i]) / 5;
   return sum;
 }
 
@@ -63,10 +63,10 @@ TEST(Slit, LightThatComesOverAPartitionIsInProportionToTheGapAndNoneWithoutIt) {
   // admits 650 lx of its area, so the room's mean is near 0.072 lx for a millimetre.
   const double tenth = light_over_the_partition(1e-4), one = light_over_the_partition(1e-3),
                ten = light_over_the_partition(1e-2);
-  // At draft elements of half a metre spread what falls on millimetres of the ceiling: a third, the same for each gap.
-  EXPECT_NEAR(tenth / 0.00551, 1, 0.33);
-  EXPECT_NEAR(one / 0.0554, 1, 0.33);
-  EXPECT_NEAR(ten / 0.563, 1, 0.33);
+  // Elements of a quarter metre spread what falls on millimetres of the ceiling: measured 7 to 21 % more, two seeds.
+  EXPECT_NEAR(tenth / 0.00551, 1, 0.25);
+  EXPECT_NEAR(one / 0.0554, 1, 0.25);
+  EXPECT_NEAR(ten / 0.563, 1, 0.25);
   EXPECT_NEAR(one / tenth, 10, 0.2 * 10);  // the bar of the issue: proportional to the slit within 20 %
   EXPECT_NEAR(ten / one, 10, 0.2 * 10);
 }

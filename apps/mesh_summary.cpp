@@ -27,6 +27,7 @@ void say_mesh(const MeshReport& r, Console& console) {
   repair(r.overlapping_regions, "overlapping coplanar surfaces cut apart");
   repair(r.t_junctions, "vertices inside another face's edge shared with it");
   repair(r.imprinted_contacts, "lines where surfaces touch or cross made edges of both");
+  repair(r.imprinted_outlines, "lines where something ends just off a surface made edges of it");
   if (r.boundary_edges || r.non_manifold_edges)
     console.say("  edges    " + grouped(r.boundary_edges) + " of one face, " + grouped(r.non_manifold_edges) +
                 " of more than two (no defects by themselves)");

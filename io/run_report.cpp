@@ -27,6 +27,7 @@ void add_mesh_figures(std::vector<Figure>& out, const MeshReport& r) {
   add("overlapping_regions", count(r.overlapping_regions));
   add("t_junctions", count(r.t_junctions));
   add("imprinted_contacts", count(r.imprinted_contacts));
+  add("imprinted_outlines", count(r.imprinted_outlines));
   add("non_manifold_edges", count(r.non_manifold_edges));
   add("boundary_edges", count(r.boundary_edges));
   add("planar_regions", count(r.planar_regions));

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "meshing/clean.h"
+#include "meshing/find_outlines.h"
 #include "meshing/imprint_contacts.h"
 #include "meshing/planar_regions.h"
 #include "meshing/plane_groups.h"
@@ -29,20 +30,25 @@ double total_area(const FaceComplex& complex) {
 }
 
 /// The bound on edges that was asked for, in the working frame.
-double asked_element(const Scene& scene, const FaceComplex& complex, const std::vector<PlanarDomain>& domains,
-                     const MeshOptions& options) {
-  const double area = total_area(complex);
+double asked_element(const Scene& scene, const FaceComplex& complex, const MeshOptions& options) {
   // A mesh of edges up to h has triangles of 0.21 h2 in the mean; area alone decides, so that the choice scales.
-  if (!options.max_element) return std::sqrt(area / (0.21 * std::max(1.0, options.target_triangles)));
+  if (!options.max_element) return std::sqrt(total_area(complex) / (0.21 * std::max(1.0, options.target_triangles)));
   if (!(*options.max_element > 0) || !std::isfinite(*options.max_element)) {
     char text[160];
     std::snprintf(text, sizeof text, ": max_element = %g m is not a length; give one above 0, such as 0.5.",
                   *options.max_element);
     throw InputError(scene.file + text);
   }
-  const double longest = *options.max_element / complex.size;
+  return *options.max_element / complex.size;
+}
+
+/// The one that is in force.
+double longest_element(const Scene& scene, const FaceComplex& complex, const std::vector<PlanarDomain>& domains,
+                       const MeshOptions& options) {
+  double longest = asked_element(scene, complex, options);
+  const double area = total_area(complex);
   const double count = estimate_triangles(complex, domains, area, longest);
-  if (!options.fit_triangles && count > kMostTriangles) {
+  if (options.max_element && !options.fit_triangles && count > kMostTriangles) {
     double enough = longest;
     while (estimate_triangles(complex, domains, area, enough) > kMostTriangles && enough < 2) enough *= 1.1;
     char text[240];
@@ -53,15 +59,8 @@ double asked_element(const Scene& scene, const FaceComplex& complex, const std::
         *options.max_element, count / 1e6, kMostTriangles / 1e6, enough * complex.size);
     throw InputError(scene.file + text);
   }
-  return longest;
-}
-
-/// The one that is in force.
-double longest_element(const Scene& scene, const FaceComplex& complex, const std::vector<PlanarDomain>& domains,
-                       const MeshOptions& options) {
-  double longest = asked_element(scene, complex, domains, options);
   if (!options.fit_triangles) return longest;
-  const double area = total_area(complex), most = std::min(kMostTriangles, *options.fit_triangles);
+  const double most = std::min(kMostTriangles, *options.fit_triangles);
   while (longest < 2 && estimate_triangles(complex, domains, area, longest) > most) longest *= 1.1;
   return longest;
 }
@@ -85,7 +84,10 @@ PatchSet to_patches(const Scene& scene, const FaceComplex& complex, const std::v
     patches.side_material.push_back({t.sheet.material_above, t.sheet.material_below});
     patches.side_surface.push_back({t.sheet.surface_above, t.sheet.surface_below});
     patches.joined.push_back(t.sheet.joined);
+    patches.outlines.push_back(t.outlines);
   }
+  if (std::ranges::all_of(patches.outlines, [](const auto& o) { return o[kFront] == 0 && o[kBack] == 0; }))
+    patches.outlines = {};
   make_patches(patches, std::vector<bool>(2 * triangles.size(), true));
   return patches;
 }
@@ -112,7 +114,9 @@ MeshedScene build_patches(const Scene& scene, const MeshOptions& options, const 
         --k;
         continue;
       }
-    drawing = imprint_contacts(complex, groups, report);
+    const std::vector<Outline> outlines =
+        find_outlines(complex, groups, scene.materials, asked_element(scene, complex, options));
+    drawing = imprint_contacts(complex, groups, outlines, report);
     report.tolerance = allowed.contact * complex.size;
     if (drawing.settled) break;
   }

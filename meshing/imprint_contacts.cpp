@@ -159,15 +159,17 @@ std::vector<Contact> find_contacts(const FaceComplex& complex, const std::vector
 /// Vertices on a line beside its ends, from its start to its end.
 using Stops = std::vector<std::uint32_t>;
 
-void keep_unique(std::vector<Line>& lines) {
+template <class Drawn>
+void keep_unique(std::vector<Drawn>& lines) {
   std::sort(lines.begin(), lines.end());
   lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
 }
 
-std::vector<Ends> distinct_ends(const std::vector<Line>& lines) {
+std::vector<Ends> distinct_ends(const Drawing& drawing) {
   std::vector<Ends> ends;
-  ends.reserve(lines.size());
-  for (const Line& l : lines) ends.push_back({l.a, l.b});
+  ends.reserve(drawing.lines.size() + drawing.outlines.size());
+  for (const Line& l : drawing.lines) ends.push_back({l.a, l.b});
+  for (const OutlineLine& o : drawing.outlines) ends.push_back({o.line.a, o.line.b});
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   return ends;
@@ -199,7 +201,7 @@ class LineSplitter {
   /// Also splits at the `forced` vertices. `drawing.lines` is sorted and unique, before and after. Returns at how many
   /// vertices below `first_new` distinct lines were split.
   std::size_t split(Drawing& drawing, const std::map<Ends, Stops>& forced, std::uint32_t first_new) {
-    const std::vector<Ends> ends = distinct_ends(drawing.lines);
+    const std::vector<Ends> ends = distinct_ends(drawing);
     const std::size_t before = layers_.size();
     add_layer(drawing, ends, forced);
     // By where they start: lines that start together look together, and those nearby next.
@@ -241,19 +243,25 @@ class LineSplitter {
     for (const Split& s : splits)
       at_old += static_cast<std::size_t>(
           std::count_if(s.stops.begin(), s.stops.end(), [&](auto v) { return v < first_new; }));
-    std::vector<Line> pieces;
-    pieces.reserve(drawing.lines.size() + 2 * splits.size());
-    for (const Line& l : drawing.lines) {
+    const auto cut = [&](const Line& l, const auto& add) {
       std::uint32_t from = l.a;
       if (const Split* s = is_split({l.a, l.b}))
         for (const std::uint32_t v : s->stops) {
-          pieces.push_back(line(l.group, from, v));
+          add(line(l.group, from, v));
           from = v;
         }
-      pieces.push_back(line(l.group, from, l.b));
-    }
+      add(line(l.group, from, l.b));
+    };
+    std::vector<Line> pieces;
+    pieces.reserve(drawing.lines.size() + 2 * splits.size());
+    for (const Line& l : drawing.lines) cut(l, [&](const Line& piece) { pieces.push_back(piece); });
     drawing.lines = std::move(pieces);
     keep_unique(drawing.lines);
+    std::vector<OutlineLine> outlines;
+    for (const OutlineLine& o : drawing.outlines)
+      cut(o.line, [&](const Line& piece) { outlines.push_back({piece, o.above}); });
+    drawing.outlines = std::move(outlines);
+    keep_unique(drawing.outlines);
     return at_old;
   }
 
@@ -456,7 +464,8 @@ void split_at_vertices(const FaceComplex& complex, Drawing& drawing) {
   LineSplitter(complex).split(drawing, {}, 0);
 }
 
-Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& groups, MeshReport& report) {
+Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& groups, std::span<const Outline> outlines,
+                         MeshReport& report) {
   Drawing drawing;
   std::vector<std::uint32_t> group_of(complex.faces.size());
   drawing.lines.reserve(3 * complex.faces.size());
@@ -491,7 +500,14 @@ Drawing imprint_contacts(FaceComplex& complex, const std::vector<PlaneGroup>& gr
         drawing.points.push_back({group_of[face], a});
     }
   }
+  for (const Outline& o : outlines) {
+    const std::uint32_t a = vertex_at(o.end[0], o.tolerance), b = vertex_at(o.end[1], o.tolerance);
+    if (a == b) continue;
+    drawing.lines.push_back(line(o.group, a, b));
+    drawing.outlines.push_back({drawing.lines.back(), o.above});
+  }
   keep_unique(drawing.lines);
+  keep_unique(drawing.outlines);
   std::sort(drawing.points.begin(), drawing.points.end());
   drawing.points.erase(std::unique(drawing.points.begin(), drawing.points.end()), drawing.points.end());
 

@@ -97,13 +97,22 @@ struct Facing {
   }
 };
 
+/// Whether something ends just off patch p's side over its edge k.
+bool is_outline(const PatchSet& patches, std::uint32_t p, std::size_t k) {
+  if (patches.outlines.empty()) return false;
+  const Side side = patches.side[p];
+  return patches.outlines[patches.triangle[p]][side] >> (side == kFront ? k : 2 - k) & 1;
+}
+
 /// Samples of the last point, around which the given corners lie. They stay in the plane of a facet, whose own normal
 /// they take: moved towards the mean of all facets' centroids, a point of a convex edge would sink under the surface.
 void place_samples(const PatchSet& patches, std::span<const Corner> around, std::vector<Facing>& facings,
                    VertexLightmap& map) {
   constexpr double kInPlane = 1 - 5e-9;  // 1e-4 rad
   facings.clear();
+  double way = VertexLightmap::kWayToCentroid;
   for (const auto& [p, k] : around) {
+    if (is_outline(patches, p, k) || is_outline(patches, p, (k + 2u) % 3u)) way = VertexLightmap::kWayFromOutline;
     const Vec3 normal = patches.normal[p];
     const auto x = patches.corner_positions(PatchId{std::size_t{p}});
     auto facing = std::find_if(facings.begin(), facings.end(),
@@ -117,7 +126,7 @@ void place_samples(const PatchSet& patches, std::span<const Corner> around, std:
   double sum = 0;
   for (const Facing& f : facings) sum += f.weight;
   for (const Facing& f : facings) {
-    map.sample_position.push_back(map.position.back() + f.inward() * VertexLightmap::kWayToCentroid);
+    map.sample_position.push_back(map.position.back() + f.inward() * way);
     map.sample_normal.push_back(f.normal);
     map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
   }
@@ -153,20 +162,21 @@ std::vector<std::array<std::uint32_t, 3>> find_neighbours(const PatchSet& patche
   return neighbour;
 }
 
-/// Where the surface does not go on smoothly.
-bool is_crease(const PatchSet& patches, OpenMesh::SmartEdgeHandle edge, double least_cosine) {
-  if (edge.is_boundary()) return true;
-  const PatchId p{static_cast<std::size_t>(edge.h0().face().idx())},
-      q{static_cast<std::size_t>(edge.h1().face().idx())};
-  // At a rim a sheet's front and its back meet.
-  return patches.triangle[p] == patches.triangle[q] || patches.material(p) != patches.material(q) ||
-         dot(patches.normal[p], patches.normal[q]) < least_cosine;
-}
-
 /// The corner that a half-edge leaves.
 Corner corner_at(OpenMesh::SmartHalfedgeHandle out) {
   const auto first = out.face().halfedge();
   return {static_cast<std::uint32_t>(out.face().idx()), out == first ? 0u : out == first.next() ? 1u : 2u};
+}
+
+/// Where the surface does not go on smoothly, or light does not.
+bool is_crease(const PatchSet& patches, OpenMesh::SmartEdgeHandle edge, double least_cosine) {
+  if (edge.is_boundary()) return true;
+  const Corner from = corner_at(edge.h0());
+  const PatchId p{static_cast<std::size_t>(edge.h0().face().idx())},
+      q{static_cast<std::size_t>(edge.h1().face().idx())};
+  // At a rim a sheet's front and its back meet.
+  return patches.triangle[p] == patches.triangle[q] || patches.material(p) != patches.material(q) ||
+         dot(patches.normal[p], patches.normal[q]) < least_cosine || is_outline(patches, from.p, from.k);
 }
 
 /// Corners that share a point, by patch: those between the creases on either side of the corner that `out` leaves.

@@ -13,6 +13,7 @@ namespace {
 struct Use {
   std::uint32_t a, b, group;
   bool parts;  ///< the group shows different sheets on its two sides, or nothing on one
+  std::uint8_t outline = kNoOutline;
 };
 
 struct GroupResult {
@@ -22,7 +23,8 @@ struct GroupResult {
 constexpr std::uint32_t kCrossing = 0x80000000;
 
 GroupResult see(const FaceComplex& complex, const PlaneGroup& group, std::uint32_t g,
-                std::span<const Material> materials, std::span<const Line> lines) {
+                std::span<const Material> materials, std::span<const Line> lines,
+                std::span<const OutlineLine> outlines) {
   GroupResult result;
   // A face alone with its own edges needs no triangulation to know them.
   if (group.faces.size() == 1 && lines.size() == 3) {
@@ -46,8 +48,16 @@ GroupResult see(const FaceComplex& complex, const PlaneGroup& group, std::uint32
     std::uint32_t a = f->vertex(cdt.cw(i))->info().id, b = f->vertex(cdt.ccw(i))->info().id;
     if (a > b) std::swap(a, b);
     result.uses.push_back({a, b, g, here != there});
+    for (const bool above : {false, true})
+      if (std::binary_search(outlines.begin(), outlines.end(), OutlineLine{{g, a, b}, above}))
+        result.uses.back().outline |= above ? kOutlineAbove : kOutlineBelow;
   }
   return result;
+}
+
+std::span<const OutlineLine> outlines_of(const Drawing& drawing, std::uint32_t group) {
+  const auto found = std::ranges::equal_range(drawing.outlines, group, {}, [](auto& o) { return o.line.group; });
+  return {found.begin(), found.end()};
 }
 
 /// Distinct lines with the groups that use them.
@@ -62,7 +72,8 @@ struct Graph {
   std::span<const Use> uses_of(const Edge& e) const { return std::span(uses).subspan(e.first_use, e.use_count); }
   bool have_same_groups(const Edge& e, const Edge& f) const {
     const auto x = uses_of(e), y = uses_of(f);
-    return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](auto& u, auto& v) { return u.group == v.group; });
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                      [](auto& u, auto& v) { return u.group == v.group && u.outline == v.outline; });
   }
 };
 
@@ -74,16 +85,16 @@ Graph needed_lines(std::vector<Use> all) {
   std::size_t kept = 0;  // uses of needed lines, one a group, move to the front
   for (std::size_t k = 0; k < all.size();) {
     Graph::Edge edge{all[k].a, all[k].b, static_cast<std::uint32_t>(kept), 0, false};
-    bool parts = false;
+    bool needed = false;
     for (; k < all.size() && all[k].a == edge.a && all[k].b == edge.b; ++k) {
-      parts |= all[k].parts;
+      needed |= all[k].parts || all[k].outline != kNoOutline;
       edge.crosses_a_region |= !all[k].parts;
       if (edge.use_count == 0 || all[kept - 1].group != all[k].group) {
         all[kept++] = all[k];
         ++edge.use_count;
       }
     }
-    if (parts || edge.use_count > 1)
+    if (needed || edge.use_count > 1)
       graph.edges.push_back(edge);
     else
       kept = edge.first_use;
@@ -195,7 +206,8 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
         for (std::size_t chunk = first + begin; chunk < first + end; ++chunk)
           for (std::size_t g = chunk * kGrain; g < std::min(groups.size(), (chunk + 1) * kGrain); ++g)
             seen[chunk].push_back(see(complex, groups[g], static_cast<std::uint32_t>(g), materials,
-                                      std::span(drawing.lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g])));
+                                      std::span(drawing.lines).subspan(begin_of[g], begin_of[g + 1] - begin_of[g]),
+                                      outlines_of(drawing, static_cast<std::uint32_t>(g))));
       });
       for (std::size_t chunk = first; chunk < last; ++chunk) {
         for (std::size_t k = 0; k < seen[chunk].size(); ++k) {
@@ -228,12 +240,21 @@ std::vector<PlanarDomain> join_planar_regions(FaceComplex& complex, const std::v
   for (std::uint32_t g = 0; g < groups.size(); ++g) domains[g].group = g;
   std::vector<bool> used(complex.vertices.size());
   for (const Graph::Edge& e : graph.edges) {
-    for (const Use& u : graph.uses_of(e)) domains[u.group].lines.push_back({e.a, e.b});
+    for (const Use& u : graph.uses_of(e)) {
+      PlanarDomain& domain = domains[u.group];
+      domain.lines.push_back({e.a, e.b});
+      if (u.outline != kNoOutline) ++report.imprinted_outlines;
+      if (u.outline == kNoOutline && domain.outline.empty()) continue;
+      domain.outline.resize(domain.lines.size());
+      domain.outline.back() = u.outline;
+    }
     used[e.a] = used[e.b] = true;
     if (e.crosses_a_region && e.use_count > 1) ++report.imprinted_contacts;
   }
   for (const auto& [g, v] : drawing.points)
     if (used[v]) domains[g].points.push_back(v);
+  for (PlanarDomain& d : domains)
+    if (!d.outline.empty()) d.outline.resize(d.lines.size());
   std::erase_if(domains, [](const PlanarDomain& d) { return d.lines.empty(); });
   return domains;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <queue>
 
 #include "meshing/cells.h"
@@ -351,6 +352,13 @@ class DividedLines {
   std::span<const Ends> of_region(std::size_t d) const {
     return std::span(by_region_).subspan(begin_of_region_[d], begin_of_region_[d + 1] - begin_of_region_[d]);
   }
+  /// The line that a piece or a half of one is part of, if it is.
+  std::optional<Ends> whole(const Ends& e) const {
+    if (const auto half = halves_.find(key(e)); half != halves_.end()) return uses_[half->second].first;
+    const Piece* known = piece(e);
+    if (!known) return std::nullopt;
+    return uses_[known->first_use].first;
+  }
   /// Halves a piece at a new vertex. Calls use(region) for every region that must do so too.
   template <class Use>
   void halve(FaceComplex& complex, const Ends& e, const Use& use) {
@@ -358,9 +366,8 @@ class DividedLines {
     if (const auto half = halves_.find(key(e)); half != halves_.end()) {
       first_use = half->second;
     } else {
-      const auto known = std::lower_bound(pieces_.begin(), pieces_.end(), e,
-                                          [](const Piece& p, const Ends& value) { return p.ends < value; });
-      if (known == pieces_.end() || known->ends != e) return;  // a crossing that tolerances hid from other regions
+      const Piece* known = piece(e);
+      if (!known) return;  // a crossing that tolerances hid from other regions
       first_use = known->first_use;
     }
     const auto middle = static_cast<std::uint32_t>(complex.vertices.size());
@@ -376,6 +383,11 @@ class DividedLines {
     Ends ends;
     std::uint32_t first_use;  ///< of its line in uses_
   };
+  const Piece* piece(const Ends& e) const {
+    const auto known = std::lower_bound(pieces_.begin(), pieces_.end(), e,
+                                        [](const Piece& p, const Ends& value) { return p.ends < value; });
+    return known == pieces_.end() || known->ends != e ? nullptr : &*known;
+  }
   static std::uint64_t key(const Ends& e) { return std::uint64_t{e[0]} << 32 | e[1]; }
   std::span<const LineUse> users(std::uint32_t first) const {
     std::size_t end = first;
@@ -388,6 +400,33 @@ class DividedLines {
   std::vector<std::size_t> begin_of_region_;
   std::vector<Ends> by_region_;
   std::unordered_map<std::uint64_t, std::uint32_t> halves_;
+};
+
+/// The edges of a region's triangle along which an outline runs.
+class OutlineEdges {
+ public:
+  OutlineEdges(const PlanarDomain& domain, const DividedLines& lines) : lines_(lines) {
+    for (std::size_t k = 0; k < domain.outline.size(); ++k)
+      if (domain.outline[k] != kNoOutline)
+        sides_.push_back({ends_of(domain.lines[k][0], domain.lines[k][1]), domain.outline[k]});
+    std::sort(sides_.begin(), sides_.end());
+  }
+  void mark(MeshTriangle& t) const {
+    for (std::size_t k = 0; k < 3 && !sides_.empty(); ++k) {
+      const auto whole = lines_.whole(ends_of(t.corner[k], t.corner[(k + 1) % 3]));
+      if (!whole) continue;
+      const auto found = std::ranges::equal_range(sides_, *whole, {}, [](const auto& s) { return s.first; });
+      if (found.empty()) continue;
+      const std::uint8_t sides = found.front().second;
+      const auto bit = static_cast<std::uint8_t>(1u << k);
+      if (sides & kOutlineAbove) t.outlines[t.sheet.flipped ? 1 : 0] |= bit;
+      if (sides & kOutlineBelow) t.outlines[t.sheet.flipped ? 0 : 1] |= bit;
+    }
+  }
+
+ private:
+  const DividedLines& lines_;
+  std::vector<std::pair<Ends, std::uint8_t>> sides_;
 };
 
 std::vector<MeshTriangle> subdivide(FaceComplex& complex, const std::vector<PlaneGroup>& groups,
@@ -482,9 +521,11 @@ std::vector<MeshTriangle> subdivide(FaceComplex& complex, const std::vector<Plan
       }
       const auto first_inner = static_cast<std::uint32_t>(complex.vertices.size());
       for (const Point2& p : inner) complex.vertices.push_back(groups[domains[d].group].plane.lift(p));
+      const OutlineEdges outlines(domains[d], lines);
       for (MeshTriangle t : found) {
         for (std::uint32_t& c : t.corner)
           if (c >= kInner) c = first_inner + (c - kInner);
+        outlines.mark(t);
         triangles.push_back(t);
       }
     }

@@ -12,8 +12,9 @@
 namespace clerestory {
 
 struct MeshTriangle {
-  std::array<std::uint32_t, 3> corner;  ///< counter-clockwise around the front
-  Sheet sheet;                          ///< above: seen from the front
+  std::array<std::uint32_t, 3> corner;     ///< counter-clockwise around the front
+  Sheet sheet;                             ///< above: seen from the front
+  std::array<std::uint8_t, 2> outlines{};  ///< by Side, bit k: an outline runs along the edge from corner k to the next
 };
 
 /// Constrained Delaunay refinement of all regions, with edges of at most `longest` (unit of the working frame).

@@ -97,6 +97,15 @@ inline Line line(std::uint32_t group, std::uint32_t a, std::uint32_t b) {
   return a < b ? Line{group, a, b} : Line{group, b, a};
 }
 
+/// A drawn line that stands for the outline of something off the plane, on the side of Plane::n or on the other one.
+struct OutlineLine {
+  Line line;
+  bool above;
+  friend auto operator<=>(const OutlineLine&, const OutlineLine&) = default;
+};
+/// On which sides of its plane a line is such an outline.
+enum OutlineSides : std::uint8_t { kNoOutline = 0, kOutlineAbove = 1, kOutlineBelow = 2 };
+
 /// What a part of a plane shows on its two sides; + is the side of Plane::n.
 struct Sheet {
   MaterialId material_above, material_below;
@@ -110,6 +119,7 @@ struct Sheet {
 struct PlanarDomain {
   std::uint32_t group = 0;
   std::vector<std::array<std::uint32_t, 2>> lines;  ///< that meet only at their ends
+  std::vector<std::uint8_t> outline;                ///< by line, OutlineSides; empty: none is one
   std::vector<std::uint32_t> points;                ///< single points that must become vertices
 };
 

@@ -351,7 +351,8 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
 bool wants_plan(const Illumination& light, const GatherPattern& pattern) {
   const RayBudget& bundle = pattern.quality().bundle;
   if (!light.bright_areas.shape.empty()) return true;
-  return !light.sky.dark() && (bundle.deepest() > bundle.least() || !light.problem.lights.openings.empty());
+  if (!light.problem.lights.openings.empty()) return true;
+  return !light.sky.dark() && bundle.deepest() > bundle.least();
 }
 
 GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,

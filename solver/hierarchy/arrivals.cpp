@@ -32,7 +32,7 @@ bool is_looked_for(const Surroundings& around, std::uint32_t patch, const Ray& r
 class Collector {
  public:
   Collector(const ReceiverArea& area, const Surroundings& around, int rays, int pairs, Arrivals& out)
-      : area_(area), around_(around), R_(rays), L_(pairs), out_(out) {}
+      : area_(area), around_(around), R_(rays), L_(pairs), out_(out), slits_(around.slits.slits_over(area)) {}
 
   void take_bundle(const Bundle& bundle) {
     const std::size_t n = area_.members().size();
@@ -45,7 +45,7 @@ class Collector {
       if (n > 1) area_.find_shares(ray.direction, shares);
       if (hit.escaped())
         take_escape(ray, hit, shares, sums);
-      else if (hit.patch.valid())
+      else if (hit.patch.valid() && !comes_by_slit(ray.origin, ray.direction, hit.first))
         take_patch(ray, hit, bundle.from[k]->normal, shares, sums);
       for (std::size_t m = 0; m < n; ++m) sums.all[m] += shares[m];
     }
@@ -66,6 +66,7 @@ class Collector {
       const BrightPair pair = bright_pair(area_, around_.light, k, key);
       if (!pair.valid()) continue;
       const Vec3 direction = normalized(pair.to - pair.from);
+      if (comes_by_slit(pair.from, direction, length(pair.to - pair.from))) continue;
       const double c = std::max(0.0, dot(pair.normal, direction)) / std::numbers::pi;
       const double weight = c * power_heuristic_over_density(L_ * pair.sample.density, R_ * c);
       if (weight > 0) shadows.send(pair.from, pair.to, {pair.sample.patch, weight, direction});
@@ -73,7 +74,24 @@ class Collector {
     shadows.trace();
   }
 
+  void take_slits() {
+    if (slits_.empty()) return;
+    for (const ReceiverArea::Member& m : area_.members())
+      for (const SlitLine& line : around_.slits.at(m.patch))
+        if (slit_on_the_way(line.place, line.direction, line.distance) == line.slit)
+          out_.list.push_back({around_.tree.node_of_patch[line.source], static_cast<float>(line.weight / area_.area()),
+                               std::uint16_t{0}, false});
+  }
+
  private:
+  std::uint32_t slit_on_the_way(const Vec3& from, const Vec3& direction, double distance) const {
+    if (slits_.empty()) return kNoOpening;
+    return first_way_out(around_.light.problem.lights.openings, slits_, from, direction, distance);
+  }
+  bool comes_by_slit(const Vec3& from, const Vec3& direction, double distance) const {
+    return slit_on_the_way(from, direction, distance) != kNoOpening;
+  }
+
   void take_escape(const Ray& ray, const Hit& hit, std::span<const double> share, BundleSums& sums) {
     const double passes = luminous_mean(hit.transmittance);
     for (std::size_t m = 0; m < share.size(); ++m) sums.escapes[m] += share[m] * passes;
@@ -127,6 +145,7 @@ class Collector {
   const Surroundings& around_;
   const int R_, L_;
   Arrivals& out_;
+  const std::vector<std::uint32_t> slits_;  ///< whose light comes by lines
 };
 
 void clear(Arrivals& arrivals, bool hands_down) {
@@ -161,6 +180,7 @@ void find_arrivals(const ReceiverArea& area, const Bundle& bundle, const Surroun
   Collector collector(area, around, static_cast<int>(bundle.rays.size()), pairs, out);
   collector.take_bundle(bundle);
   if (pairs > 0) collector.take_pairs(mix_bits(key + kBrightPairs));
+  collector.take_slits();
   make_sum_one(area.members().size(), static_cast<int>(bundle.rays.size()), out);
 }
 

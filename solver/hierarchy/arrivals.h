@@ -7,6 +7,7 @@
 
 #include "solver/hierarchy/receiver_area.h"
 #include "solver/hierarchy/receiver_rays.h"
+#include "solver/hierarchy/slit_lines.h"
 #include "solver/hierarchy/sphere_parts.h"
 #include "solver/illumination/direct.h"
 #include "solver/illumination/illumination.h"
@@ -53,6 +54,7 @@ struct Surroundings {
   const Illumination& light;
   const ElementTree& tree;
   const DirectLight& direct;
+  const SlitLines& slits;
   bool keeps_sky_views;
   bool sums_sky;  ///< whether Arrivals::E_sky is wanted
 };
@@ -63,7 +65,8 @@ struct Surroundings {
 ///   w = c own / (own^2 + other^2),   c = cos / pi, own and other: R c and L density, or the other way round;
 /// one that ends elsewhere w = 1 / R. The bright patches' weights so have the noise of pairs where these are better.
 /// What they leave of all directions is shared by the rest of the bundle: patches, sky, glass. So a row sums to 1 less
-/// what escapes or is lost, exactly.
+/// what escapes or is lost, exactly. What surfaces send through slits comes by the lines of those instead, and rays
+/// that find it do not count.
 ///
 /// bundle  sent from this area, R rays.
 /// pairs   L; 0: bright patches are left to the bundle.

@@ -299,8 +299,10 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
   const bool alone = kernel.is_boundary(back);
   const Parting here = parting(h), there = alone ? Parting{} : parting(back);
   const bool smooth = !alone && there.point[0] == here.point[1] && there.point[1] == here.point[0];
-  const std::uint32_t point = add_point(here, smooth ? &there : nullptr, place);
-  const std::uint32_t point_there = alone || smooth ? point : add_point(there, nullptr, place);
+  const double way =
+      !alone && !smooth && is_outline(here, there) ? VertexLightmap::kWayFromOutline : VertexLightmap::kWayToCentroid;
+  const std::uint32_t point = add_point(here, smooth ? &there : nullptr, way, place);
+  const std::uint32_t point_there = alone || smooth ? point : add_point(there, nullptr, way, place);
 
   const Vertex middle = kernel.new_vertex();
   half_edges_->vertex[middle] = static_cast<std::uint32_t>(vertices_.size());
@@ -333,7 +335,14 @@ void ElementMesh::part_with_neighbour(std::uint32_t element, std::size_t edge, f
   if (!alone) part(there, 1 - at, point_there, kernel.opposite_halfedge_handle(to_end), to_start);
 }
 
-std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, const Vec3& place) {
+/// Between elements that share no points at their edge: whether the surface goes on there all the same.
+bool ElementMesh::is_outline(const Parting& here, const Parting& there) const {
+  const PatchId p{std::size_t{elements_[here.element].patch}}, q{std::size_t{elements_[there.element].patch}};
+  return patches_.material(p) == patches_.material(q) &&
+         dot(patches_.normal[p], patches_.normal[q]) > VertexLightmap::kAlike;
+}
+
+std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, double way, const Vec3& place) {
   const auto point = static_cast<std::uint32_t>(points_.position.size());
   const std::uint32_t patch = elements_[here.element].patch;
   points_.position.push_back(place);
@@ -341,7 +350,7 @@ std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, 
   ends_.push_back({here.point[0], here.point[1]});
   const auto sample = [&](const Parting& facet, double weight) {
     const Vec3 to_centroid = (facet.apex - place) / 3;
-    points_.sample_position.push_back(place + to_centroid * VertexLightmap::kWayToCentroid);
+    points_.sample_position.push_back(place + to_centroid * way);
     points_.sample_normal.push_back(patches_.normal[elements_[facet.element].patch]);
     points_.sample_weight.push_back(weight);
   };

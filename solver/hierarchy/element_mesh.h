@@ -85,7 +85,8 @@ class ElementMesh {
 
   void describe(Element& leaf, std::uint32_t number, int corner0);
   void part_with_neighbour(std::uint32_t element, std::size_t edge, float at);
-  std::uint32_t add_point(const Parting& here, const Parting* other, const Vec3& place);
+  bool is_outline(const Parting& here, const Parting& there) const;
+  std::uint32_t add_point(const Parting& here, const Parting* other, double way, const Vec3& place);
 
   const PatchSet& patches_;
   std::vector<Element> elements_;

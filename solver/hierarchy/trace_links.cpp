@@ -146,7 +146,8 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   Transport transport;
   transport.arrives.resize(n), transport.escapes.resize(n);
   const bool merges = B.size() == n;
-  const Given given{{light, tree, direct, options.sky_views, merges && options.uniform > 0},
+  const SlitLines slits(light.problem, options.seed);
+  const Given given{{light, tree, direct, slits, options.sky_views, merges && options.uniform > 0},
                     options,
                     net_of(options),
                     merges ? node_light(tree, B) : NodeLight{}};
@@ -180,7 +181,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   transport.complete = !stopped;
   if (stopped) return transport;
   const int pairs = light.sampler.has_bright_patches() ? options.bright_rays : 0;
-  transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs);
+  transport.rays = receivers.size() * static_cast<unsigned long long>(options.bundle_rays + pairs) + slits.rays();
   find_spaces(transport, patches, tree, receivers, neighbours);
   return transport;
 }

@@ -176,6 +176,31 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
   return E;
 }
 
+/// Beside what ends a little off the surface light may fall through a slit, on a strip that no vertex tells of: only
+/// rays from all over the element know its flux. Scales the leaves of such elements to E of the transport.
+void keep_flux_at_outlines(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
+                           const Field& E_transport, Field& E) {
+  const PatchSet& patches = mesh.patches();
+  if (patches.outlines.empty()) return;
+  const std::vector<std::uint32_t> leaves = mesh.leaves();
+  std::size_t begin = 0;
+  for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
+    const std::size_t end = begin + mesh.leaves_under(transport_leaves[j]);
+    const std::size_t patch = mesh[transport_leaves[j]].patch;
+    if (patches.outlines[patches.triangle[patch]][patches.side[patch]] != 0)
+      for (int c = 0; c < E.channels; ++c) {
+        double flux = 0, area = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+          flux += mesh[leaves[k]].area * E.at(k, c);
+          area += mesh[leaves[k]].area;
+        }
+        for (std::size_t k = begin; k < end; ++k)
+          E.at(k, c) = flux > 0 ? E.at(k, c) * E_transport.at(j, c) * area / flux : E_transport.at(j, c);
+      }
+    begin = end;
+  }
+}
+
 /// Scales what the field has of all light but that of sun and luminaires, so that its flux is that of the transport:
 /// the vertices share their directions, and so a small error, while the bundles of the elements are independent of each
 /// other. What differs by more is no such error, and stays. Where a luminaire is near a surface the spot there sends
@@ -264,8 +289,9 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
     spot.insert(spot.end(), mesh.leaves_under(transport_leaves[j]), coarse.elements.spot[j]);
   coarse.elements = {};  // a million of them are a third of a gigabyte
   HierarchicalField out{mesh.leaf_patches(), {}, {}, {}};
-  solution.E =
-      field_on_leaves(mesh, transport_leaves, coarse, field, near, {out.elements, problem.rays, problem.lights});
+  Field E = field_on_leaves(mesh, transport_leaves, coarse, field, near, {out.elements, problem.rays, problem.lights});
+  keep_flux_at_outlines(mesh, transport_leaves, solution.E, E);
+  solution.E = std::move(E);
   if (of_layers) {
     finish_layers(mesh, transport_layers, problem.patches.channels, field);
     out.layers.B = radiosity_of_layers(mesh, transport_layers, field, out.elements, solution.E, options.layers);

@@ -45,6 +45,9 @@ struct PatchSet {
   std::vector<std::array<PatchId, 2>> side_patch;  ///< by triangle of the rays and Side; invalid where that side takes
                                                    ///< no part; the root in `splits` when there are any
   std::vector<SplitNode> splits;  ///< the first are the patches before any was halved; empty: rays meet whole patches
+  /// T by Side, or empty for none; bit k: something ends a little off this side, over the edge from corner k to the
+  /// next (front order). Light may jump there, though the surface goes on smoothly.
+  std::vector<std::array<std::uint8_t, 2>> outlines;
   std::vector<bool> joined;  ///< T, or empty for none: two faces lie here back to back, so the back is a front as well
 
   // N patches.

@@ -51,6 +51,7 @@ enum Stream : std::uint64_t {
   kBundle = 0x91,
   kBrightPairs = 0x92,
   kBrightPairPilot = 0x93,
+  kSlitLines = 0x94,
   kVariationProbe = 0xa1,
   kBfPairs = 0xb1,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.

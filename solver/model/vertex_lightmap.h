@@ -29,6 +29,9 @@ struct VertexLightmap {
   /// Share of the way to a facet's centroid that a sample is off its point: far enough from edges for single precision
   /// rays, too near to be seen.
   static constexpr double kWayToCentroid = 2e-3;
+  /// The same where something ends a little off the surface: right under it a slit's light is as bright as outdoors, on
+  /// a strip as narrow as the slit, and would be drawn out over all of the elements there.
+  static constexpr double kWayFromOutline = 0.25;
   // Where irradiance is gathered, S samples: one for each direction that the facets around a point face, so one for a
   // point of a flat surface. Point p has samples sample_begin[p] .. sample_begin[p + 1] - 1, of weights that sum to 1.
   std::vector<std::uint32_t> sample_begin;  ///< P + 1

@@ -22,6 +22,7 @@ constexpr std::size_t kMostPlanes = 3000;   ///< surfaces that are looked for in
 constexpr std::size_t kMostSteps = 1000;    ///< around one loop
 constexpr std::size_t kMostAtVertex = 32;   ///< free edges at one vertex that are walked along
 constexpr std::size_t kMostOfPlane = 5000;  ///< rims of a plane, else it is not searched for strips
+constexpr double kLeastLifts = 10;          ///< width of a strip: rays know what is narrower too badly
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// An edge of a plane surface beyond which its plane goes on as air; the surface lies to the left of a -> b.
@@ -281,10 +282,10 @@ class StripFinder {
     constexpr double kInset = 0.01;
     const double w0 = free_way(plane, at(kInset), out), w1 = free_way(plane, at(1 - kInset), out),
                  middle = free_way(plane, at(0.5), out);
-    const double most = std::max({w0, w1, middle}), least = 100 * rays_.lift();
+    const double most = std::max({w0, w1, middle}), least = kLeastLifts * rays_.lift();
     if (!(most > least)) return;
-    if (std::isfinite(most) && std::min({w0, w1, middle}) > least / 100 &&
-        std::abs(middle - (w0 + w1) / 2) < 1e-3 * most) {
+    if (std::isfinite(most) && std::min({w0, w1, middle}) > rays_.lift() &&
+        std::abs(middle - (w0 + w1) / 2) < std::max(1e-3 * most, rays_.lift())) {
       const double slope = (w1 - w0) / (1 - 2 * kInset);
       const double at_a = std::max(0.0, w0 - kInset * slope), at_b = std::max(0.0, w1 + kInset * slope);
       gaps.push_back({{edge.a, edge.b, edge.b + out * at_b, edge.a + out * at_a}, false});

@@ -52,6 +52,11 @@ double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n) {
   return F;
 }
 
+bool is_slit(const LightArea& opening) {
+  constexpr double kNarrow = 0.02;  // of its length: windows are wider
+  return opening.area < kNarrow * 4 * opening.radius * opening.radius;
+}
+
 Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {
   const auto u = sobol4(k, key);
   double left = sobol4(k, key + 1)[0] * opening.area;
@@ -62,7 +67,10 @@ Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, s
     if (left < area) break;
     left -= area;
   }
-  return {point_on_triangle(*triangle, u[0], u[1]) + side * lift, cosine_direction(Frame(side), u[2], u[3])};
+  // A little short of what is around: rounding would put the start behind it.
+  const double inset = std::min(0.05, lift * 2 * opening.radius / opening.area);
+  const Vec3 p = point_on_triangle(*triangle, u[0], u[1]);
+  return {p + (opening.centre - p) * inset + side * lift, cosine_direction(Frame(side), u[2], u[3])};
 }
 
 std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,

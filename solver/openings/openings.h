@@ -36,13 +36,17 @@ std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const
 /// the opposite.
 Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift);
 
+/// Whether it is so narrow that rays meet it by chance only.
+bool is_slit(const LightArea& opening);
+
 /// The gaps in the surfaces that have the sky on one side and a room on the other: windows, doors, rooflights, slits.
+/// Slits also where surfaces are seen by them of which one side's are many times as bright.
 ///
 /// A rim is an edge of a surface beyond which its plane goes on as air. Rims that close to a loop bound a hole; from
 /// other rims the strip to what stands opposite in that plane is tried. Of these, those are kept that see the sky on
 /// one side and not much of it on the other, and see what no larger one shows. Glass is air here.
 ///
-/// patches  conforming; rays: of them. lights: local frame; empty result without a sky.
+/// patches  conforming; rays: of them. lights: local frame.
 /// Threads: same result for any thread count. Cost: O(T log T) and 3 to 21 rays an edge of a surface, for the 20,000
 /// longest; models of more than two million triangles are not searched.
 std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include <assimp/Importer.hpp>
@@ -221,8 +222,7 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
 
 /// A DAE or FBX file that begins with the mark of UTF-8, which Assimp does not skip in all of them, without it; empty
 /// for other files.
-std::string without_mark(const std::filesystem::path& file, const std::string& extension) {
-  if (extension == ".ifc") return "";
+std::string without_mark(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string head(4, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -236,7 +236,7 @@ Model import(const std::filesystem::path& file, const std::string& extension) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);       // no made-up nodes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // No post-processing: polygons stay polygons, and node transforms are applied here in double.
-  const std::string bytes = without_mark(file, extension);
+  const std::string bytes = without_mark(file);
   const aiScene* scene = bytes.empty()
                              ? importer.ReadFile(file.string(), 0)
                              : importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str() + 1);

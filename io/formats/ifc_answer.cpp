@@ -126,7 +126,6 @@ ModelMaterial read_material(const Json& json) {
   if (reflectance || colour) to.material.reflectance = reflectance ? *reflectance : *colour;
   const auto glass = shares(json, "glass"), passes = shares(json, "transmittance");
   to.described = reflectance || colour || glass;
-  to.textured = json.value("textured", false);
   if (glass) {
     to.material.kind = MaterialKind::glass;
     to.material.transmittance = *glass;
@@ -154,7 +153,12 @@ std::string line_of(const NotRead& note) {
 void read_end(const Json& json, const std::filesystem::path& file, Model& model) {
   UniqueNames surfaces, spaces;
   for (const Json& name : json.at("surfaces")) model.surfaces.push_back(surfaces.take(name.get<std::string>()));
-  for (const Json& material : json.at("materials")) model.materials.push_back(read_material(material));
+  for (const Json& material : json.at("materials")) {
+    model.materials.push_back(read_material(material));
+    if (!material.value("textured", false)) continue;
+    if (model.textures.empty()) model.textures.push_back({"a texture of IFC", {}, {}});
+    model.materials.back().texture = 0;
+  }
   for (const Json& space : json.at("spaces"))
     model.spaces.push_back({spaces.take(word(space, "name")), word(space, "long_name"), {}, {}});
   for (const Json& fixture : json.at("fixtures"))

@@ -160,12 +160,12 @@ void read_luminaire_entries(const JsonObject& root, const std::string& file_name
 
 std::vector<FixtureRule> read_fixture_rules(const JsonObject& root, const std::string& file_name,
                                             const std::filesystem::path& folder, ChannelCount& channels,
-                                            std::vector<std::string>& warnings) {
+                                            Scene& scene) {
   std::vector<FixtureRule> rules;
   if (!root.has("fixtures")) return rules;
   const Json& entries = root.at("fixtures");
   if (!entries.is_object()) refuse_type(root.place("fixtures"), "an object of names and photometric files", entries);
-  LuminaireReader reader(folder, channels, warnings);
+  LuminaireReader reader(folder, channels, scene);
   for (const auto& [pattern, value] : entries.items()) {
     const std::string place = text(file_name, ": fixtures '", quotable(pattern), "'");
     if (!value.is_string() && !value.is_object()) refuse_type(place, "the name of an .ies or .ldt file", value);

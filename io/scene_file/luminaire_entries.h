@@ -30,7 +30,7 @@ struct FixtureRule {
 /// throws  InputError.
 std::vector<FixtureRule> read_fixture_rules(const JsonObject& root, const std::string& file_name,
                                             const std::filesystem::path& folder, ChannelCount& channels,
-                                            std::vector<std::string>& warnings);
+                                            Scene& scene);
 
 /// The luminaire of the first rule that matches one of the fixture's names; nothing when none does.
 std::optional<Luminaire> apply_rules(std::vector<FixtureRule>& rules, const ModelFixture& fixture);

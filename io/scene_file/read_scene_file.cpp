@@ -181,7 +181,7 @@ Scene read_scene_file(const std::filesystem::path& file) {
   // What is quick to check comes first; models may take a while.
   if (root.has("materials")) rules = read_material_rules(root.at("materials"), name, channels, scene.warnings);
   read_luminaire_entries(root, name, folder, channels, scene);
-  std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, channels, scene.warnings);
+  std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, channels, scene);
   scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
     scene.settings = read_settings(JsonObject(

@@ -5,7 +5,7 @@
 #include <optional>
 #include <tuple>
 
-#include "meshing/box_tree.h"
+#include "solver/model/box_tree.h"
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 

@@ -5,6 +5,7 @@
 
 #include "solver/geometry/polygon.h"
 #include "solver/lights/luminaire.h"
+#include "solver/lights/near_planes.h"
 #include "solver/lights/sky.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -124,7 +125,7 @@ class Judge {
       share *= hit.transmittance;
       if (hit.escaped()) return luminous_mean(L + share * sky_(hit.direction(ray)));
       if (!hit.patch.valid() || bounce == kMostBounces) return luminous_mean(L);
-      const Vec3 n = patches_.normal[hit.patch], p = hit.position(ray) + n * rays_.lift();
+      const Vec3 n = patches_.normal[hit.patch], p = rays_.off_surface(hit.position(ray), n);
       L += share * (patches_.M[hit.patch] + patches_.rho[hit.patch] * delta_light(p, n)) * (1 / std::numbers::pi);
       share *= patches_.rho[hit.patch];
       const auto u = sobol4(bounce, key);
@@ -141,7 +142,9 @@ class Judge {
     const std::size_t luminaires = lights_.luminaires.size(), step = 1 + luminaires / kFewLuminaires;
     for (std::size_t k = 0; k < luminaires; k += step) {
       const PlacedLuminaire& luminaire = lights_.luminaires[k];
-      if (luminaire.mirror == kNoMirror && rays_.visible(p, short_of(luminaire.position, p, rays_.lift())))
+      if (luminaire.mirror != kNoMirror) continue;
+      const ShadowSegment way = shadow_segment(luminaire, luminaire.position, p);
+      if (way.is_free || rays_.visible(way.from, way.to))
         E += open_irradiance(luminaire, p, n) * static_cast<double>(step);
     }
     return E;

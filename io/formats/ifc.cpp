@@ -77,7 +77,7 @@ Model read_ifc(const std::filesystem::path& file) {
   // An honest megabyte takes well under a second and some 10 MB; the rest is for slow machines.
   const std::chrono::seconds seconds(30 + 5 * (bytes >> 20));
   const std::uint64_t memory = (1ull << 30) + 60 * bytes;
-  const ProgramLimits limits{.cpu_time = seconds, .time = 4 * seconds, .memory_bytes = memory};
+  const ProgramLimits limits{.cpu_time = seconds, .time = 2 * seconds, .memory_bytes = memory};
   const std::string heap = text("--max-old-space-size=", (memory >> 20) / 2);
   std::string answer;
   try {

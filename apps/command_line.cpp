@@ -66,7 +66,8 @@ std::variant<Task, ExitCode> read_command_line(int argc, const char* const* argv
     program.exit(help_or_version);
     return kDone;
   } catch (const CLI::ParseError& error) {
-    std::cerr << "error: " << message_line(usage_problem(program, error), 80) << "\nSee clerestory --help." << std::endl;
+    std::cerr << "error: " << message_line(usage_problem(program, error), 80) << "\nSee clerestory --help."
+              << std::endl;
     return kWrongUsage;
   }
   return task;

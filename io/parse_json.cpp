@@ -77,9 +77,9 @@ class BoundedBuilder : public nlohmann::json_sax<AnyJson> {
     const std::string what = error.what();
     const bool has_place = dynamic_cast<const typename AnyJson::parse_error*>(&error) != nullptr;
     const std::size_t detail = what.find(has_place ? ": " : "] ");
-    throw InputError(text(file_name_, has_place ? ":" + line_and_column(bytes_, position > 0 ? position - 1 : 0) : "",
-                          ": is not valid JSON: ",
-                          with_short_token(detail == what.npos ? what : what.substr(detail + 2))));
+    throw InputError(
+        text(file_name_, has_place ? ":" + line_and_column(bytes_, position > 0 ? position - 1 : 0) : "",
+             ": is not valid JSON: ", with_short_token(detail == what.npos ? what : what.substr(detail + 2))));
   }
 
  private:

@@ -9,7 +9,6 @@
 #include "meshing/imprint_contacts.h"
 #include "meshing/planar_regions.h"
 #include "meshing/plane_groups.h"
-#include "meshing/stacked_faces.h"
 #include "meshing/subdivide.h"
 #include "meshing/triangle_quality.h"
 #include "solver/model/box.h"
@@ -100,20 +99,11 @@ MeshedScene build_patches(const Scene& scene, const MeshOptions& options, const 
   FaceComplex complex;
   std::vector<PlaneGroup> groups;
   Drawing drawing;
-  std::vector<Tolerance> tolerances(kTolerances.begin(), kTolerances.end());
-  for (std::size_t k = 0; k < tolerances.size(); ++k) {
-    const Tolerance allowed = tolerances[k];
+  for (const Tolerance& allowed : kTolerances) {
     report = {};
     complex = clean(scene, allowed, report);
     count_edges(complex, report);
     groups = group_by_plane(complex);
-    // Sheets that lie over each other on purpose, a hair apart, are kept apart where the model is exact enough.
-    if (k == 0 && tolerances.size() == kTolerances.size())
-      if (const double gap = least_gap(complex, groups); gap < Box::kHuge) {
-        tolerances.insert(tolerances.begin(), {std::max(kLeastTolerance, gap / 4), allowed.local_share});
-        --k;
-        continue;
-      }
     const std::vector<Outline> outlines =
         find_outlines(complex, groups, scene.materials, asked_element(scene, complex, options));
     drawing = imprint_contacts(complex, groups, outlines, report);

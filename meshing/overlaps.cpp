@@ -66,8 +66,11 @@ const Covering::Piece* Covering::winner(const std::vector<const Piece*>& coverin
     const bool acts = front || m.sides == 2;
     return by_size_only ? std::tuple(0, 0, p.rank) : std::tuple(acts ? 0 : 1, front ? 0 : 1, p.rank);
   };
+  double low = Box::kHuge, high = -Box::kHuge;
+  for (const Piece* p : covering) low = std::min(low, p->height.low), high = std::max(high, p->height.high);
+  const bool any_hidden = !by_size_only && high - low > complex_.rounding;
   for (const Piece* p : covering) {
-    if (!by_size_only && std::ranges::any_of(covering, [&](const Piece* q) { return hides(*q, *p, above); })) continue;
+    if (any_hidden && std::ranges::any_of(covering, [&](const Piece* q) { return hides(*q, *p, above); })) continue;
     if (!best || key(*p) < key(*best)) best = p;
   }
   return best;

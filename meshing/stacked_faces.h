@@ -1,8 +1,6 @@
 #pragma once
 // Faces that are joined in one plane although they were read as lying over each other.
 
-#include <vector>
-
 #include "meshing/surface_complex.h"
 
 namespace clerestory {
@@ -16,8 +14,5 @@ HeightAsRead height_as_read(const FaceComplex& complex, const Plane& plane, cons
 /// The distance of b over a when both were read as parallel sheets that are further apart than rounding explains
 /// (FaceComplex::rounding) and than they are tilted; else 0: what lies between may be chance.
 double gap_between(const FaceComplex& complex, const HeightAsRead& a, const HeightAsRead& b);
-
-/// The least such distance of two faces that cover each other within a plane group; infinite where there are none.
-double least_gap(const FaceComplex& complex, const std::vector<PlaneGroup>& groups);
 
 }  // namespace clerestory

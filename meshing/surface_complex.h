@@ -24,8 +24,6 @@ struct Tolerance {
 /// (rounded to millimetres, say), it is tried again with the next.
 inline constexpr std::array kTolerances{Tolerance{6e-7, 0.01}, Tolerance{5e-6, 0.1}, Tolerance{2e-5, 1},
                                         Tolerance{1e-4, 1}};
-/// Smaller ones would be lost in the grid of coordinates (clean.cpp).
-inline constexpr double kLeastTolerance = 5e-10;
 
 struct Face {
   static constexpr std::uint32_t kNone = 0xffffffff;

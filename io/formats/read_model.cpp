@@ -13,9 +13,8 @@ struct Format {
   Model (*read)(const std::filesystem::path&);
 };
 constexpr Format kFormats[] = {
-    {".obj", read_obj},         {".gltf", read_gltf},       {".glb", read_gltf},
-    {".ply", read_ply},         {".stl", read_stl},         {".off", read_off},
-    {".dae", read_with_assimp}, {".fbx", read_with_assimp}, {".ifc", read_ifc},
+    {".obj", read_obj}, {".gltf", read_gltf},       {".glb", read_gltf},        {".ply", read_ply}, {".stl", read_stl},
+    {".off", read_off}, {".dae", read_with_assimp}, {".fbx", read_with_assimp}, {".ifc", read_ifc},
 };
 
 }  // namespace

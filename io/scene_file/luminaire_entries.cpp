@@ -159,8 +159,7 @@ void read_luminaire_entries(const JsonObject& root, const std::string& file_name
 }
 
 std::vector<FixtureRule> read_fixture_rules(const JsonObject& root, const std::string& file_name,
-                                            const std::filesystem::path& folder, ChannelCount& channels,
-                                            Scene& scene) {
+                                            const std::filesystem::path& folder, ChannelCount& channels, Scene& scene) {
   std::vector<FixtureRule> rules;
   if (!root.has("fixtures")) return rules;
   const Json& entries = root.at("fixtures");

@@ -29,8 +29,7 @@ struct FixtureRule {
 
 /// throws  InputError.
 std::vector<FixtureRule> read_fixture_rules(const JsonObject& root, const std::string& file_name,
-                                            const std::filesystem::path& folder, ChannelCount& channels,
-                                            Scene& scene);
+                                            const std::filesystem::path& folder, ChannelCount& channels, Scene& scene);
 
 /// The luminaire of the first rule that matches one of the fixture's names; nothing when none does.
 std::optional<Luminaire> apply_rules(std::vector<FixtureRule>& rules, const ModelFixture& fixture);

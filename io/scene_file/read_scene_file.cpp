@@ -159,7 +159,8 @@ void compare_north(const JsonObject& root, const std::string& file_name, Scene& 
   if (std::abs(off) < 0.1) return;
   scene.warnings.push_back(text(file_name, ": the model says that north is ", *scene.model_north_deg,
                                 " degrees clockwise from +y, the scene's location says ", said,
-                                "; the scene counts. Write \"north\": ", *scene.model_north_deg, " to follow the model"));
+                                "; the scene counts. Write \"north\": ", *scene.model_north_deg,
+                                " to follow the model"));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ MeasuredError summarise(std::span<const Comparison> samples) {
   const auto share = [&](const Comparison& s) { return s.weight / weights; };  // 1 in the mean
   for (const Comparison& s : samples) mean += share(s) * s.r / n;
   if (!std::isfinite(mean)) throw std::logic_error("a reference of the measured error is no number");
-  if (!(mean > 0)) return {};  // in the dark there is nothing to be wrong about
+  if (!(mean > 0)) return {};                       // in the dark there is nothing to be wrong about
   std::vector<std::pair<double, double>> relative;  // and its share
   for (const Comparison& s : samples) {
     squares += share(s) * (s.x - s.r) * (s.x - s.r) / n;

@@ -21,6 +21,7 @@ constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of lumin
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kLift = 5e-7;       // of the diameter: a few units in the last place at the rim of the scene
 constexpr double kFineLift = 1e-12;  // of the diameter: far above double's rounding, far below what meshing keeps apart
+constexpr double kGrid = 1e-9;       // of the diameter: meshing moves vertices by a quarter of that (meshing/clean.cpp)
 
 struct Device {
   RTCDevice handle = rtcNewDevice("set_affinity=0");
@@ -294,8 +295,8 @@ bool RayScene::is_tight(const Vec3& p) const { return impl_->tight.contains(p); 
 double RayScene::diameter() const { return impl_->diameter; }
 
 Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
-  const double fine = kFineLift * impl_->diameter;
-  if (is_tight(p)) return p + n * fine;
+  if (is_tight(p)) return p + n * (kFineLift * impl_->diameter);
+  const double in_plane = kGrid * impl_->diameter;
   std::vector<TriangleId> near;
   const auto note = [&](TriangleId t) { near.push_back(t); };
   for (const Surfaces* surfaces : {&impl_->opaque, &impl_->glass}) surfaces->visit_near(p, 2 * lift(), note);
@@ -307,7 +308,7 @@ Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
     if (distance2_to_triangle(at, c) >= lift() * lift()) continue;
     const Vec3 normal = normalized(cross(c[1] - c[0], c[2] - c[0]));
     const double h = dot(normal, at - c[0]);
-    const bool is_above = std::abs(h) > fine ? h > 0 : dot(normal, n) >= 0;
+    const bool is_above = std::abs(h) > in_plane ? h > 0 : dot(normal, n) >= 0;
     at += normal * ((is_above ? lift() : -lift()) - h);
   }
   return at;

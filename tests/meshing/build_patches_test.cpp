@@ -316,8 +316,9 @@ SceneMaker ceiling_and_panel(double gap, MaterialId& ceiling, MaterialId& panel,
   return maker;
 }
 
-TEST(BuildPatches, SheetsAHairApartStayTwoHoweverSmallTheGap) {
-  for (const double gap : {-1e-3, -1e-6, -1e-7, 2e-8, 1e-7, 1e-6, 3e-6, 1e-5, 1e-3})
+TEST(BuildPatches, SheetsFurtherApartThanTheToleranceStayTwo) {
+  // 6e-7 of the 6.4 m that the room is, at most.
+  for (const double gap : {-1e-3, -5e-6, 5e-6, 1e-5, 1e-3})
     for (const bool same_size : {false, true}) {
       SCOPED_TRACE(::testing::Message() << "gap " << gap << (same_size ? ", same size" : ""));
       MaterialId ceiling, panel;
@@ -329,15 +330,11 @@ TEST(BuildPatches, SheetsAHairApartStayTwoHoweverSmallTheGap) {
         EXPECT_NEAR(area_of(p, ceiling, side), 16, 16 * kRounding);
         EXPECT_NEAR(area_of(p, panel, side), same_size ? 16 : 4, 16 * kRounding);
       }
-      for (std::size_t t = 0; t < p.triangle_count(); ++t) {
-        const double z = p.vertices[p.corners[t][0]].z + p.origin.z;
-        EXPECT_NEAR(z - 2.7, p.side_material[t][kFront] == panel ? gap : 0, 3e-9);  // the grid
-      }
     }
 }
 
 TEST(BuildPatches, SheetsInOnePlaneAreJoinedStill) {
-  for (const double gap : {0.0, 5e-9}) {
+  for (const double gap : {0.0, 5e-9, 1e-7, 1e-6}) {
     MaterialId ceiling, panel;
     SceneMaker maker = ceiling_and_panel(gap, ceiling, panel);
     const auto [p, report] = mesh(maker, 0.5);
@@ -347,8 +344,7 @@ TEST(BuildPatches, SheetsInOnePlaneAreJoinedStill) {
   }
 }
 
-TEST(BuildPatches, SheetsThatAreJoinedForWantOfExactnessShowTheOutermostOnEachSide) {
-  // As when no finer tolerance lets the lines of a model meet.
+TEST(BuildPatches, SheetsThatAreJoinedShowTheOutermostOnEachSide) {
   for (const double gap : {-1e-6, 1e-6})
     for (const bool is_glass : {false, true}) {
       SCOPED_TRACE(::testing::Message() << gap << (is_glass ? " glass" : ""));
@@ -359,7 +355,6 @@ TEST(BuildPatches, SheetsThatAreJoinedForWantOfExactnessShowTheOutermostOnEachSi
       const FaceComplex complex = clean(maker.scene(), kTolerances[0], report);
       const std::vector<PlaneGroup> groups = group_by_plane(complex);
       ASSERT_EQ(groups.size(), 1u);
-      EXPECT_NEAR(least_gap(complex, groups) * complex.size, std::abs(gap), 1e-8);
       const Covering covering(complex, groups[0], maker.scene().materials);
       const auto found = covering.at(groups[0].plane.flatten(Vec3{0.01, 0.02, 0}), 0.01);
       ASSERT_TRUE(found);

@@ -14,12 +14,14 @@ namespace {
 
 // By judgement. Elements are halved where light varies, down to an eighth of the longest edge: they find the shadow of
 // what stands further off by themselves.
-constexpr double kNear = 0.125;       ///< of an element: an edge further off is no end of anything at that plane
-constexpr double kSteep = 0.34;       ///< sine of the angle at which a surface leaves the plane
-constexpr double kLevel = 0.1;        ///< sine of the angle up to which a surface leads along the plane
-constexpr double kDeep = 4;           ///< of the gap: how far the surface reaches away, at least
-constexpr double kWide = 0.5;         ///< of an element: a smaller outline is that of a foot
-constexpr double kShortest = 0.03;    ///< of an element: shorter edges are detail
+constexpr double kNear = 0.125;     ///< of an element: an edge further off is no end of anything at that plane
+constexpr double kSteep = 0.34;     ///< sine of the angle at which a surface leaves the plane
+constexpr double kLevel = 0.1;      ///< sine of the angle up to which a surface leads along the plane
+constexpr double kDeep = 4;         ///< of the gap: how far the surface reaches away, at least
+constexpr double kWide = 0.5;       ///< of an element: a smaller outline is that of a foot
+constexpr double kShortest = 0.03;  ///< of an element: shorter edges are detail
+constexpr std::size_t kMostLooks =
+    4000;  ///< of an edge at faces near by, in the mean: where more crowd there is no outline
 constexpr double kLargePlane = 0.25;  ///< of the square of an element
 
 /// An edge and the opaque faces that have it.
@@ -58,16 +60,21 @@ class OutlineFinder {
     constexpr std::size_t kGrain = 1024;
     std::vector<std::vector<Approach>> found((edges_.size() + kGrain - 1) / kGrain);
     parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t chunk = begin; chunk < end; ++chunk)
+      for (std::size_t chunk = begin; chunk < end; ++chunk) {
+        std::size_t looks = 0;
         for (std::size_t e = chunk * kGrain; e < std::min(edges_.size(), (chunk + 1) * kGrain); ++e) {
           Box box;
           box.add(vertex(edges_[e].a));
           box.add(vertex(edges_[e].b));
-          large.visit(box.grown(kNear * element_), [&](std::uint32_t k) {
-            if (const auto line = approach(edges_[e], large_[k]))
-              found[chunk].push_back({static_cast<std::uint32_t>(e), group_of_[large_[k]], *line});
-          });
+          box = box.grown(kNear * element_);
+          large.visit_if([&](const Box& b) { return looks < kMostLooks * kGrain && b.touches(box); },
+                         [&](std::uint32_t k) {
+                           ++looks;
+                           if (const auto line = approach(edges_[e], large_[k]))
+                             found[chunk].push_back({static_cast<std::uint32_t>(e), group_of_[large_[k]], *line});
+                         });
         }
+      }
     });
     std::vector<Approach> approaches;
     for (const auto& some : found) approaches.insert(approaches.end(), some.begin(), some.end());

@@ -15,9 +15,9 @@ in_parallel=(--parallel "$(nproc)" --output-on-failure --no-label-summary)
 bash apps/install_dependencies.sh libgtest-dev
 if [ "${1:-}" = --quick ]; then
   # What compiles fast of what reads strangers' files: the program itself is left out, its command line takes long.
-  readers=(io_read_test photometry_test io_sky_test sky_image_test)
+  readers=(io_read_test photometry_test io_sky_test io_image_test)
   build asan "${readers[@]}" \
-    fuzz_{scene,obj,mtl,ply,stl,off,gltf,glb,dae,fbx,ifc,epw,ies,ldt,sensors,json,text,model_bytes,meshing,solve}
+    fuzz_{scene,obj,mtl,ply,stl,off,gltf,glb,dae,fbx,ifc,ifc_answer,epw,ies,ldt,sensors,json,text,model_bytes,meshing,solve}
   for program in "${readers[@]}"; do build/asan/bin/"$program" --gtest_brief=1; done
   ctest --preset asan --tests-regex '^Fuzz\.' --exclude-regex arguments "${in_parallel[@]}"
   build tsan transport_test

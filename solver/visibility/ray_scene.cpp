@@ -21,7 +21,7 @@ constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of lumin
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kLift = 5e-7;       // of the diameter: a few units in the last place at the rim of the scene
 constexpr double kFineLift = 1e-12;  // of the diameter: far above double's rounding, far below what meshing keeps apart
-constexpr double kGrid = 1e-9;       // of the diameter: meshing moves vertices by a quarter of that (meshing/clean.cpp)
+constexpr double kGrid = 2.5e-10;    // of the diameter: meshing moves vertices by half of that (meshing/clean.cpp)
 
 struct Device {
   RTCDevice handle = rtcNewDevice("set_affinity=0");

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tests under sanitizers: all for addresses and undefined behaviour (preset asan), then those of solver, pipeline and
 # laws for races (preset tsan).
-#   --quick   what CI runs: readers, the fuzz targets and with them a solve by each method; for races transport alone
+#   --quick   what CI runs: readers, the fuzz targets and with them a solve by each method; for races glass and mirrors, which are whole solves
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -20,8 +20,8 @@ if [ "${1:-}" = --quick ]; then
     fuzz_{scene,obj,mtl,ply,stl,off,gltf,glb,dae,fbx,ifc,ifc_answer,epw,ies,ldt,sensors,json,text,model_bytes,meshing,solve}
   for program in "${readers[@]}"; do build/asan/bin/"$program" --gtest_brief=1; done
   ctest --preset asan --tests-regex '^Fuzz\.' --exclude-regex arguments "${in_parallel[@]}"
-  build tsan transport_test
-  build/tsan/bin/transport_test --gtest_brief=1
+  build tsan glass_test mirror_test
+  for program in glass_test mirror_test; do build/tsan/bin/$program --gtest_brief=1; done
 else
   build asan
   ctest --preset asan "${in_parallel[@]}"

@@ -121,11 +121,68 @@ TightPlaces::TightPlaces(const PatchSet& patches, double lift) : reach_(kReach *
     }
   if (triangles_.empty()) return;
   tight_ = std::move(tight);
+  cells_.lay(triangles_, reach_);
   tree_.emplace(triangles_.size(), StoredBoxes{std::move(boxes)});
 }
 
+void TightPlaces::Cells::lay(const std::vector<std::array<Vec3, 3>>& triangles, double reach) {
+  constexpr double kMostCells = 1 << 24;   // bits: 2 MB, which stay near the processor
+  constexpr double kMostInARow = 1 << 12;  // where all lie in a plane or in a line
+  Box all;
+  for (const auto& triangle : triangles)
+    for (const Vec3& corner : triangle) all.add(corner);
+  all = all.grown(reach);
+  lower_ = all.lower;
+  const Vec3 size = all.upper - all.lower;
+  per_metre_ =
+      std::min(std::cbrt(kMostCells / (size.x * size.y * size.z)), kMostInARow / std::max({size.x, size.y, size.z}));
+  for (std::size_t k = 0; k < 3; ++k) count_[k] = static_cast<std::size_t>(size[static_cast<int>(k)] * per_metre_) + 1;
+  is_near_.assign(count_[0] * count_[1] * count_[2], false);
+  for (const auto& triangle : triangles) {
+    const Box box = Box::around(triangle).grown(reach);
+    Range range;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto cell = [&](const Vec3& p) {
+        return static_cast<std::size_t>((p - lower_)[static_cast<int>(k)] * per_metre_);
+      };
+      range[k] = {cell(box.lower), std::min(cell(box.upper), count_[k] - 1) + 1};
+    }
+    mark(triangle, reach, range);
+  }
+}
+
+void TightPlaces::Cells::mark(const std::array<Vec3, 3>& triangle, double reach, const Range& range) {
+  std::array<double, 3> middle, half;
+  std::size_t longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [begin, end] = range[k];
+    middle[k] = static_cast<double>(begin + end) / 2 / per_metre_,
+    half[k] = static_cast<double>(end - begin) / 2 / per_metre_;
+    if (half[k] > half[longest]) longest = k;
+  }
+  const double far = std::hypot(half[0], half[1], half[2]) + reach;
+  if (distance2_to_triangle(lower_ + Vec3{middle[0], middle[1], middle[2]}, triangle) > far * far) return;
+  const auto [begin, end] = range[longest];
+  if (end - begin == 1) {
+    is_near_[(range[2][0] * count_[1] + range[1][0]) * count_[0] + range[0][0]] = true;
+    return;
+  }
+  Range part = range;
+  part[longest] = {begin, (begin + end) / 2};
+  mark(triangle, reach, part);
+  part[longest] = {(begin + end) / 2, end};
+  mark(triangle, reach, part);
+}
+
+bool TightPlaces::Cells::may_hold(const Vec3& p) const {
+  const Vec3 at = (p - lower_) * per_metre_;
+  if (!(at.x >= 0 && at.y >= 0 && at.z >= 0)) return false;
+  const auto x = static_cast<std::size_t>(at.x), y = static_cast<std::size_t>(at.y), z = static_cast<std::size_t>(at.z);
+  return x < count_[0] && y < count_[1] && z < count_[2] && is_near_[(z * count_[1] + y) * count_[0] + x];
+}
+
 bool TightPlaces::contains(const Vec3& p) const {
-  if (!tree_) return false;
+  if (!tree_ || !cells_.may_hold(p)) return false;
   bool found = false;
   tree_->visit_if(
       [&](const Box& box) {

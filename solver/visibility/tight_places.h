@@ -28,10 +28,27 @@ class TightPlaces {
   bool contains(const Vec3& p) const;
 
  private:
+  /// Cells of space; those that no tight triangle comes near to need no look at the triangles.
+  class Cells {
+   public:
+    void lay(const std::vector<std::array<Vec3, 3>>& triangles, double reach);
+    bool may_hold(const Vec3& p) const;
+
+   private:
+    using Range = std::array<std::array<std::size_t, 2>, 3>;  ///< by axis: first cell, and the one behind the last
+    void mark(const std::array<Vec3, 3>& triangle, double reach, const Range& range);
+
+    Vec3 lower_;
+    double per_metre_ = 0;
+    std::array<std::size_t, 3> count_{};
+    std::vector<bool> is_near_;
+  };
+
   double reach_ = 0;
   std::vector<std::uint8_t> tight_;             ///< T; empty: none is
   std::vector<std::array<Vec3, 3>> triangles_;  ///< the tight ones
   std::optional<BoxTree<StoredBoxes>> tree_;    ///< of their boxes, grown by the reach
+  Cells cells_;
 };
 
 /// Square of the distance from p to a triangle [m2]. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.

@@ -9,6 +9,7 @@
 #include "meshing/stacked_faces.h"
 #include "meshing/triangulate_polygon.h"
 #include "solver/model/box_tree.h"
+#include "solver/model/coordinate_grid.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -17,9 +18,7 @@ namespace {
 /// Beyond this squares overflow; no building is there.
 bool is_usable(const Vec3& p) { return std::abs(p.x) < 1e100 && std::abs(p.y) < 1e100 && std::abs(p.z) < 1e100; }
 
-/// To a grid of 2^-32 of the model: far below every tolerance, far above rounding, so that the same model in another
-/// unit or place gives the same coordinates, and with them the same mesh.
-double on_grid(double x) { return std::nearbyint(x * 0x1p32) * 0x1p-32; }
+double on_grid(double x) { return std::nearbyint(x / kCoordinateGrid) * kCoordinateGrid; }
 
 struct Welder {
   explicit Welder(FaceComplex& c) : complex(c), index(c.vertices, c.allowed.contact) {}
@@ -45,7 +44,7 @@ bool has_area(const FaceComplex& complex, const std::array<std::uint32_t, 3>& c)
 /// What is between coordinates by chance, in the working frame: models whose coordinates are all of single precision
 /// are taken to be rounded to it; all are rounded to the grid.
 double rounding_of(const PolygonSoup& soup, const std::vector<bool>& used, double size) {
-  constexpr double kGrid = 8 * 0x1p-32;
+  constexpr double kGrid = 8 * kCoordinateGrid;
   double largest = 0;
   bool is_single = true;
   for (std::size_t v = 0; v < soup.vertices.size(); ++v) {

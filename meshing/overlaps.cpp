@@ -57,6 +57,13 @@ bool Covering::hides(const Piece& p, const Piece& q, bool above) const {
   return above ? gap > 0 : gap < 0;
 }
 
+/// The one that hides all that are hidden, if any are.
+const Covering::Piece* Covering::outermost(const std::vector<const Piece*>& covering, bool above) const {
+  return *std::ranges::max_element(covering, {}, [&](const Piece* p) {
+    return above ? 2 * p->height.low - p->height.high : p->height.low - 2 * p->height.high;
+  });
+}
+
 const Covering::Piece* Covering::winner(const std::vector<const Piece*>& covering, bool above,
                                         bool by_size_only) const {
   const Piece* best = nullptr;
@@ -66,11 +73,9 @@ const Covering::Piece* Covering::winner(const std::vector<const Piece*>& coverin
     const bool acts = front || m.sides == 2;
     return by_size_only ? std::tuple(0, 0, p.rank) : std::tuple(acts ? 0 : 1, front ? 0 : 1, p.rank);
   };
-  double low = Box::kHuge, high = -Box::kHuge;
-  for (const Piece* p : covering) low = std::min(low, p->height.low), high = std::max(high, p->height.high);
-  const bool any_hidden = !by_size_only && high - low > complex_.rounding;
+  const Piece* outer = by_size_only ? nullptr : outermost(covering, above);
   for (const Piece* p : covering) {
-    if (any_hidden && std::ranges::any_of(covering, [&](const Piece* q) { return hides(*q, *p, above); })) continue;
+    if (outer && hides(*outer, *p, above)) continue;
     if (!best || key(*p) < key(*best)) best = p;
   }
   return best;
@@ -103,10 +108,12 @@ std::optional<Covering::Found> Covering::at(const Point2& p, double reach) const
   const bool is_flush = std::ranges::none_of(covering, [&](const Piece* q) {
     return !materials_[q->material].is_sheet() && gap_between(complex_, best->height, q->height) != 0;
   });
-  if (!materials_[best->material].is_sheet() || !is_flush)
-    std::erase_if(covering, [&](const Piece* q) { return materials_[q->material].is_sheet(); });
-  else
+  // A pane before a wall does not open it; a mirror or a diffuser on one hides it.
+  const Material& material = materials_[best->material];
+  if (material.is_sheet() && (is_flush || !material.lets_rays_pass()))
     covering.assign(1, best);
+  else
+    std::erase_if(covering, [&](const Piece* q) { return materials_[q->material].is_sheet(); });
   const Piece *above = winner(covering, true, false), *below = winner(covering, false, false);
   found.sheet = {above->material, below->material, above->surface, below->surface, false, false};
   found.sheet.flipped = !above->faces_up && !below->faces_up;

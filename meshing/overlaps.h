@@ -42,6 +42,7 @@ class Covering {
     HeightAsRead height;
   };
   bool hides(const Piece& p, const Piece& q, bool above) const;
+  const Piece* outermost(const std::vector<const Piece*>& covering, bool above) const;
   const Piece* winner(const std::vector<const Piece*>& covering, bool above, bool by_size_only) const;
 
   const FaceComplex& complex_;

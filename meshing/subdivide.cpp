@@ -6,15 +6,12 @@
 #include <queue>
 
 #include "meshing/cells.h"
+#include "meshing/divided_lines.h"
 #include "solver/model/parallel.h"
 
 namespace clerestory {
 namespace {
 
-using Ends = std::array<std::uint32_t, 2>;
-Ends ends_of(std::uint32_t a, std::uint32_t b) { return a < b ? Ends{a, b} : Ends{b, a}; }
-
-constexpr double kLineShare = 0.8;            ///< even division of lines, as share of `longest`
 constexpr double kFinest = 0.2;               ///< angles are bettered down to this share of `longest`
 constexpr double kRadiusToEdge = 1.18;        ///< circumradius / shortest edge = 1 / (2 sin 25 degrees)
 constexpr std::uint32_t kInner = 0x80000000;  ///< ids from here on are a region's own, until the end
@@ -308,99 +305,6 @@ double estimate_triangles(const FaceComplex& complex, const std::vector<PlanarDo
     }
   return area / (0.21 * longest * longest) + pieces;
 }
-
-/// Lines divided evenly, once for all regions that use them.
-class DividedLines {
- public:
-  DividedLines(FaceComplex& complex, const std::vector<PlanarDomain>& domains, double longest) {
-    std::size_t count = 0;
-    for (const PlanarDomain& d : domains) count += d.lines.size();
-    uses_.reserve(count);
-    for (std::uint32_t d = 0; d < domains.size(); ++d)
-      for (const Ends& l : domains[d].lines) uses_.push_back({ends_of(l[0], l[1]), d});
-    std::sort(uses_.begin(), uses_.end());
-    uses_.erase(std::unique(uses_.begin(), uses_.end()), uses_.end());
-    begin_of_region_.assign(domains.size() + 1, 0);
-    pieces_.reserve(uses_.size());
-    for (std::uint32_t k = 0; k < uses_.size();) {
-      const Ends whole = uses_[k].first;
-      const std::uint32_t first_use = k;
-      const std::size_t first_piece = pieces_.size();
-      const Vec3 a = complex.vertices[whole[0]], b = complex.vertices[whole[1]];
-      const int pieces = std::max(1, static_cast<int>(std::ceil(length(b - a) / (kLineShare * longest) - 1e-9)));
-      std::uint32_t from = whole[0];
-      for (int i = 1; i <= pieces; ++i) {
-        std::uint32_t to = whole[1];
-        if (i < pieces) {
-          to = static_cast<std::uint32_t>(complex.vertices.size());
-          complex.vertices.push_back(a + (b - a) * (static_cast<double>(i) / pieces));
-        }
-        pieces_.push_back({ends_of(from, to), first_use});
-        from = to;
-      }
-      for (; k < uses_.size() && uses_[k].first == whole; ++k)
-        begin_of_region_[uses_[k].second + 1] += pieces_.size() - first_piece;
-    }
-    for (std::size_t d = 0; d < domains.size(); ++d) begin_of_region_[d + 1] += begin_of_region_[d];
-    by_region_.resize(begin_of_region_.back());
-    std::vector<std::size_t> next(begin_of_region_.begin(), begin_of_region_.end() - 1);
-    for (const Piece& p : pieces_)
-      for (const auto& [whole, d] : users(p.first_use)) by_region_[next[d]++] = p.ends;
-    std::sort(pieces_.begin(), pieces_.end(), [](const Piece& p, const Piece& q) { return p.ends < q.ends; });
-  }
-
-  std::span<const Ends> of_region(std::size_t d) const {
-    return std::span(by_region_).subspan(begin_of_region_[d], begin_of_region_[d + 1] - begin_of_region_[d]);
-  }
-  /// The line that a piece or a half of one is part of, if it is.
-  std::optional<Ends> whole(const Ends& e) const {
-    if (const auto half = halves_.find(key(e)); half != halves_.end()) return uses_[half->second].first;
-    const Piece* known = piece(e);
-    if (!known) return std::nullopt;
-    return uses_[known->first_use].first;
-  }
-  /// Halves a piece at a new vertex. Calls use(region) for every region that must do so too.
-  template <class Use>
-  void halve(FaceComplex& complex, const Ends& e, const Use& use) {
-    std::uint32_t first_use = 0;
-    if (const auto half = halves_.find(key(e)); half != halves_.end()) {
-      first_use = half->second;
-    } else {
-      const Piece* known = piece(e);
-      if (!known) return;  // a crossing that tolerances hid from other regions
-      first_use = known->first_use;
-    }
-    const auto middle = static_cast<std::uint32_t>(complex.vertices.size());
-    complex.vertices.push_back((complex.vertices[e[0]] + complex.vertices[e[1]]) / 2);
-    halves_.emplace(key(ends_of(e[0], middle)), first_use);
-    halves_.emplace(key(ends_of(e[1], middle)), first_use);
-    for (const auto& [whole, d] : users(first_use)) use(d, middle);
-  }
-
- private:
-  using LineUse = std::pair<Ends, std::uint32_t>;  ///< line, region
-  struct Piece {
-    Ends ends;
-    std::uint32_t first_use;  ///< of its line in uses_
-  };
-  const Piece* piece(const Ends& e) const {
-    const auto known = std::lower_bound(pieces_.begin(), pieces_.end(), e,
-                                        [](const Piece& p, const Ends& value) { return p.ends < value; });
-    return known == pieces_.end() || known->ends != e ? nullptr : &*known;
-  }
-  static std::uint64_t key(const Ends& e) { return std::uint64_t{e[0]} << 32 | e[1]; }
-  std::span<const LineUse> users(std::uint32_t first) const {
-    std::size_t end = first;
-    while (end < uses_.size() && uses_[end].first == uses_[first].first) ++end;
-    return std::span(uses_).subspan(first, end - first);
-  }
-
-  std::vector<LineUse> uses_;
-  std::vector<Piece> pieces_;
-  std::vector<std::size_t> begin_of_region_;
-  std::vector<Ends> by_region_;
-  std::unordered_map<std::uint64_t, std::uint32_t> halves_;
-};
 
 /// The edges of a region's triangle along which an outline runs.
 class OutlineEdges {

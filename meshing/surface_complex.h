@@ -58,6 +58,8 @@ struct FaceComplex {
   double line_tolerance(std::uint32_t a, std::uint32_t b) const { return std::max(tolerance[a], tolerance[b]); }
 };
 
+using Ends = std::array<std::uint32_t, 2>;  ///< vertices of a line
+
 struct Point2 {
   double x = 0, y = 0;
 };

@@ -69,7 +69,7 @@ Sight look(const Problem& problem, MaterialId m, const Vec3& point, const Vec3& 
     const Side side = dot(normal, hit.direction(ray)) < 0 ? kFront : kBack;
     const MaterialId material = patches.side_material[hit.triangle][side];
     const bool is_other = material.value != m.value;
-    const bool is_far = double{hit.distance} > kRightBehind;
+    const bool is_far = hit.distance > kRightBehind;
     if (patches.materials[material].scatters_through()) {
       ++sight.room;
       continue;

@@ -104,7 +104,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
         lap.add_to(seconds.measure);
 
-        out.openings = lights.openings.size();
+        out.openings = lights.sky_openings().size();
         out.patches = std::move(patches);
         out.lightmap = std::move(solved.lightmap);
         out.solution = std::move(solution);

@@ -156,8 +156,8 @@ void clear(Arrivals& arrivals, bool hands_down) {
   if (hands_down) arrivals.shares.clear();
 }
 
-/// All directions sum to 1. What the bright sources leave, by their better estimate, is shared by the rest of the
-/// bundle: other patches, what escapes, what is lost.
+/// All directions but slits sum to 1. What the bright sources leave, by their better estimate, is shared by the rest of
+/// the bundle: other patches, what escapes, what is lost.
 void make_sum_one(std::size_t members, int rays, Arrivals& arrivals) {
   const BrightShares& bright = arrivals.bright;
   const bool rest = bright.hits < 1 && bright.seen < 1;
@@ -180,8 +180,8 @@ void find_arrivals(const ReceiverArea& area, const Bundle& bundle, const Surroun
   Collector collector(area, around, static_cast<int>(bundle.rays.size()), pairs, out);
   collector.take_bundle(bundle);
   if (pairs > 0) collector.take_pairs(mix_bits(key + kBrightPairs));
-  collector.take_slits();
   make_sum_one(area.members().size(), static_cast<int>(bundle.rays.size()), out);
+  collector.take_slits();
 }
 
 }  // namespace clerestory

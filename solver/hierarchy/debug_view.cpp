@@ -100,12 +100,12 @@ void view_links(const PatchSet& patches, const ElementTree& tree, const Place& p
 void view_rays(const Illumination& light, std::span<const BundleRay> bundle, const Field& B, DebugShapes<2>& out) {
   double longest = 0;
   for (const BundleRay& b : bundle)
-    if (!b.hit.escaped()) longest = std::max(longest, double{b.hit.distance});
+    if (!b.hit.escaped()) longest = std::max(longest, b.hit.distance);
   if (longest == 0) longest = light.problem.rays.diameter();
   std::vector<double> radiosity;
   out.shapes.clear();
   for (const auto& [ray, hit] : bundle) {
-    out.shapes.push_back({ray.origin, ray.origin + ray.direction * (hit.escaped() ? longest : double{hit.distance})});
+    out.shapes.push_back({ray.origin, ray.origin + ray.direction * (hit.escaped() ? longest : hit.distance)});
     Spectrum landed(0.0);
     if (hit.escaped()) landed = light.sky(ray.direction) * std::numbers::pi;
     if (hit.patch.valid()) landed = B[hit.patch];

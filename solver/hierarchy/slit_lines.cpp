@@ -39,7 +39,7 @@ SlitLines::SlitLines(const Problem& problem, std::uint64_t seed) {
         const double passes = luminous_mean(receiver.transmittance) * luminous_mean(source.transmittance);
         found[s].push_back({receiver.patch.value, number_[s], source.patch.value,
                             static_cast<float>(slit.area * passes / count), receiver.position(in),
-                            -receiver.direction(in), double{receiver.distance} + double{source.distance}});
+                            -receiver.direction(in), receiver.distance + source.distance});
       }
     }
   });
@@ -48,6 +48,19 @@ SlitLines::SlitLines(const Problem& problem, std::uint64_t seed) {
     return std::tie(a.receiver, a.slit) < std::tie(b.receiver, b.slit);
   });
   rays_ = 2ull * count * slits_.size();
+  drop_blocked(found);
+}
+
+/// Slits that no line comes through.
+void SlitLines::drop_blocked(const std::vector<std::vector<SlitLine>>& lines_of) {
+  std::size_t kept = 0;
+  for (std::size_t s = 0; s < slits_.size(); ++s) {
+    if (lines_of[s].empty()) continue;
+    if (kept != s) slits_[kept] = std::move(slits_[s]);
+    number_[kept++] = number_[s];
+  }
+  slits_.resize(kept);
+  number_.resize(kept);
 }
 
 std::vector<std::uint32_t> SlitLines::slits_over(const ReceiverArea& area) const {

@@ -35,6 +35,8 @@ class SlitLines {
   unsigned long long rays() const { return rays_; }
 
  private:
+  void drop_blocked(const std::vector<std::vector<SlitLine>>& lines_of);
+
   std::vector<LightArea> slits_;
   std::vector<std::uint32_t> number_;  ///< of slits_ among the openings
   std::vector<SlitLine> lines_;        ///< sorted by receiver, then slit

@@ -4,20 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "solver/illumination/delta_light.h"
 #include "solver/illumination/illumination.h"
 #include "solver/illumination/light_rows.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
 
 namespace clerestory {
-
-struct DirectOptions {
-  int shadow_rays = 16;  ///< shadow rays from a patch to each luminaire and sun
-  int edge_rays = 256;   ///< instead, where as many rays of a pilot disagree: the patch lies on the edge of a shadow
-  int sky_rays = 256;    ///< cosine rays a patch that look for the sky; 0: without sky but through openings
-  std::uint64_t seed = 1;
-  bool rough_first = true;  ///< with a deadline: all patches get a rough value, in case it comes before the good ones
-};
 
 /// Which openings rays of their own look through, by patch: of patch i number[begin[i]] ... number[begin[i + 1] - 1].
 /// Both are empty without any.
@@ -66,10 +59,6 @@ struct DirectRows {
 ///       patch, and for each ray of the patch that looks for the sky.
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {},
                          DirectRows* rows = nullptr);
-
-/// Mean irradiance that luminaires and suns give some of the problem's patches, one value each, as direct_light() finds
-/// it [W/m2].
-Field delta_light_on(const Problem& problem, std::span<const std::uint32_t> patches, const DirectOptions& options);
 
 /// Direct light of layers, N x lanes [W/m2].
 struct DirectLayers {

@@ -19,7 +19,7 @@ struct Illumination {
   explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}
   /// glow: see LightSampler; outlives this.
   Illumination(const Problem& p, const Field& glow)
-      : problem(p), sampler(p, glow), sky(p.lights), openings(p.lights.openings, p.rays.diameter()) {}
+      : problem(p), sampler(p, glow), sky(p.lights), openings(p.lights.sky_openings(), p.rays.diameter()) {}
   /// Lets a gather look at bright patches that lie together as one.
   void look_at_bright_areas() { bright_areas = find_bright_areas(problem.patches, sampler); }
 };

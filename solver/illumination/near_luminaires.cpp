@@ -4,9 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/geometry/triangle.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/luminaire_view.h"
 #include "solver/lights/near_planes.h"
+#include "solver/model/coordinate_grid.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
@@ -16,32 +18,10 @@ namespace clerestory {
 namespace {
 
 // Of the scene's diameter: floats resolve 6e-8 of it, and what rays are lifted by is 5e-7.
-constexpr double kClearance = 2e-6, kDoubleRounding = 1e-12;
+constexpr double kClearance = 2e-6;
 constexpr double kFloatRounding = 1.2e-7;                  // of a coordinate: two roundings
 constexpr std::size_t kMostFound = 256, kMostPlanes = 24;  // of a luminaire; the nearest
 constexpr std::uint32_t kRays = 128;  // that tell where its light goes, and whether its side is open
-
-/// Point of a triangle that is nearest to p. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.
-Vec3 nearest_point(const std::array<Vec3, 3>& t, const Vec3& p) {
-  const auto& [a, b, c] = t;
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const Vec3 bp = p - b;
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
-  const Vec3 cp = p - c;
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  const double sum = va + vb + vc;
-  return sum > 0 ? a + ab * (vb / sum) + ac * (vc / sum) : a;
-}
 
 struct Found {
   NearPlane plane;
@@ -54,9 +34,10 @@ struct Reach {
   std::uint32_t luminaire;
 };
 
-/// Planes of all triangles within twice the clearance of the luminaires, by luminaire, each once.
+/// Planes of all triangles within twice the clearance of the luminaires, by luminaire, each once; those nearer to each
+/// other than `exact` are one.
 std::vector<std::vector<Found>> planes_around(const std::vector<PlacedLuminaire>& luminaires, const PatchSet& patches,
-                                              double clearance) {
+                                              double clearance, double exact) {
   std::vector<Reach> by_x;
   double widest = 0;
   const Vec3 margin{2 * clearance, 2 * clearance, 2 * clearance};
@@ -88,7 +69,7 @@ std::vector<std::vector<Found>> planes_around(const std::vector<PlacedLuminaire>
       auto& planes = found[at->luminaire];
       const auto same = std::ranges::find_if(planes, [&](const Found& f) {
         const double along = dot(f.plane.normal, n);
-        return std::abs(along) > 1 - 1e-12 && std::abs(plane.height(q) * along - f.plane.height(q)) < 1e-6 * clearance;
+        return std::abs(along) > 1 - 1e-12 && std::abs(plane.height(q) * along - f.plane.height(q)) < exact;
       });
       if (same != planes.end())
         same->distance = std::min(same->distance, distance);
@@ -127,8 +108,8 @@ bool is_open(const PatchSet& patches, const RayScene& rays, const Vec3& q, const
 
 void find_near_planes(Lights& lights, const PatchSet& patches, const RayScene& rays) {
   if (lights.luminaires.empty()) return;
-  const double clearance = kClearance * rays.diameter(), exact = kDoubleRounding * rays.diameter();
-  auto found = planes_around(lights.luminaires, patches, clearance);
+  const double clearance = kClearance * rays.diameter(), exact = kCoordinateGrid * rays.diameter();
+  auto found = planes_around(lights.luminaires, patches, clearance, exact);
   for (std::size_t k = 0; k < found.size(); ++k) {
     PlacedLuminaire& luminaire = lights.luminaires[k];
     std::vector<Found>& around = found[k];

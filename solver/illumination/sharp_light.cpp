@@ -27,9 +27,8 @@ ShadowSegment SharpLight::to_centre(const Vec3& p, const Vec3& n) const {
   return {from, from + sun_->direction * (4 * problem_->rays.diameter()), false};
 }
 
-ShadowSegment SharpLight::to_rim(const Vec3& p, const Vec3& n, int k) const {
+ShadowSegment SharpLight::to_rim(const Vec3& from, int k) const {
   const double around = static_cast<double>(k) / kRimRays;
-  const Vec3 from = problem_->rays.off_surface(p, n);
   if (luminaire_) return shadow_segment(*luminaire_, rim_point(*luminaire_, from, around), from);
   return {from, from + direction_to_sun(*sun_, kRim, around) * (4 * problem_->rays.diameter()), false};
 }
@@ -59,8 +58,9 @@ std::uint16_t SharpLight::see_centre(std::span<const Vec3> points, const Vec3& n
 
 LightSeen SharpLight::seen(const Vec3& p, const Vec3& n) const {
   if (luminaire_ && opening_rays(*luminaire_, p) == 1) return sees_centre(p, n) ? LightSeen::all : LightSeen::none;
+  const Vec3 from = problem_->rays.off_surface(p, n);
   std::array<ShadowSegment, kRimRays> segments;
-  for (int k = 0; k < kRimRays; ++k) segments[static_cast<std::size_t>(k)] = to_rim(p, n, k);
+  for (int k = 0; k < kRimRays; ++k) segments[static_cast<std::size_t>(k)] = to_rim(from, k);
   const std::uint16_t seen = free(segments);
   return seen == 0 ? LightSeen::none : seen == 0xffff ? LightSeen::all : LightSeen::part;
 }

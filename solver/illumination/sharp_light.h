@@ -29,7 +29,7 @@ class SharpLight {
 
  private:
   ShadowSegment to_centre(const Vec3& p, const Vec3& n) const;
-  ShadowSegment to_rim(const Vec3& p, const Vec3& n, int k) const;
+  ShadowSegment to_rim(const Vec3& from, int k) const;
   std::uint16_t free(std::span<const ShadowSegment> segments) const;
 
   const Problem* problem_;

@@ -1,9 +1,11 @@
 #pragma once
 // The light of a scene as a solve wants it: where it stands among the patches, and what was found out about it.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "solver/model/light_spec.h"
@@ -33,14 +35,15 @@ struct PlacedSun : Sun {
   std::uint32_t mirror = kNoMirror;  ///< as of PlacedLuminaire
 };
 
-/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky looks into a room,
-/// or bright patches that lie together. Only a hint where to look: what it misses is found as well.
+/// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky or a bright room
+/// looks into a room, or bright patches that lie together. Only a hint where to look: what it misses is found as well.
 struct LightArea {
   std::vector<Vec3> corners;                   ///< counter-clockwise around the normal, local frame [m]
   std::vector<std::array<Vec3, 3>> triangles;  ///< that cover it, wound alike [m]
   Vec3 centre, normal;                         ///< normal: unit, to where the light goes
   double radius = 0, area = 0;                 ///< radius: farthest point from the centre [m], area [m2]
   double brightness = 0;                       ///< mean radiance that comes out of it [W/(m2 sr)]
+  bool sees_sky = true;                        ///< false: of an opening that only surfaces send light through
 };
 
 /// Positions are in the local frame of the patches.
@@ -49,6 +52,12 @@ struct Lights {
   std::optional<Sky> sky;
   std::vector<PlacedSun> suns;      ///< the scene's, then images
   std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
+
+  /// Those through which the sky is seen: they come first.
+  std::span<const LightArea> sky_openings() const {
+    const auto end = std::ranges::find(openings, false, &LightArea::sees_sky);
+    return {openings.begin(), end};
+  }
 
   bool empty() const { return luminaires.empty() && !sky && suns.empty(); }
 };

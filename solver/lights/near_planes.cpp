@@ -24,9 +24,9 @@ Vec3 clear_of(const std::vector<NearPlane>& planes, Vec3 x, const Vec3* side_in)
 ShadowSegment shadow_segment(const PlacedLuminaire& luminaire, const Vec3& q, const Vec3& from) {
   if (luminaire.near_planes.empty()) return {from, q, false};
   const Vec3 a = clear_of(luminaire.near_planes, from, nullptr), b = clear_of(luminaire.near_planes, q, &from);
-  double clearance = 0;
-  for (const NearPlane& plane : luminaire.near_planes) clearance = std::max(clearance, plane.clearance);
-  return {a, b, length(b - a) < clearance};
+  double clearance = luminaire.near_planes.front().clearance;
+  for (const NearPlane& plane : luminaire.near_planes) clearance = std::min(clearance, plane.clearance);
+  return {a, b, luminaire.mirror == kNoMirror && length(b - a) < clearance};
 }
 
 Vec3 ray_start(const PlacedLuminaire& luminaire, const Vec3& q, const Vec3& d) {

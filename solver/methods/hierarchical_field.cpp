@@ -92,8 +92,10 @@ Field without_delta_light(const VertexField& field) {
 
 /// Sun and luminaire light of some leaves, by leaf; of the others nothing. They are looked at from the luminaire, as
 /// its peak may lie between their corners.
-Field light_near_luminaires(const Problem& on_leaves, const std::vector<std::uint32_t>& near_leaves) {
-  const Field found = delta_light_on(on_leaves, near_leaves, {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0});
+Field light_near_luminaires(const Problem& on_leaves, const std::vector<std::uint32_t>& near_leaves,
+                            std::uint64_t seed) {
+  const Field found =
+      delta_light_on(on_leaves, near_leaves, {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = seed});
   Field all(on_leaves.patches.patch_count(), on_leaves.patches.channels);
   for (std::size_t k = 0; k < near_leaves.size(); ++k) all.set(near_leaves[k], found[k]);
   return all;
@@ -146,11 +148,11 @@ std::vector<double> put_right_near(const ElementMesh& mesh, std::span<const std:
 /// corners.
 Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
                       const HierarchicalSolution& coarse, const VertexField& field, const NearLuminaires& near,
-                      const Problem& on_leaves) {
+                      const Problem& on_leaves, std::uint64_t seed) {
   Field E = leaf_irradiance(mesh, field.E);
   if (coarse.delta_light.value.empty()) return E;
   const Field rest = leaf_irradiance(mesh, without_delta_light(field));
-  const Field near_light = light_near_luminaires(on_leaves, near.halved);
+  const Field near_light = light_near_luminaires(on_leaves, near.halved, seed);
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   const std::vector<bool> at_edge = points_at_edges(mesh, leaves, field);
   std::size_t begin = 0;
@@ -176,18 +178,20 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
   return E;
 }
 
+bool has_outlines(const PatchSet& patches, std::size_t patch) {
+  return !patches.outlines.empty() && patches.outlines[patches.triangle[patch]][patches.side[patch]] != 0;
+}
+
 /// Beside what ends a little off the surface light may fall through a slit, on a strip that no vertex tells of: only
 /// rays from all over the element know its flux. Scales the leaves of such elements to E of the transport.
 void keep_flux_at_outlines(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
                            const Field& E_transport, Field& E) {
-  const PatchSet& patches = mesh.patches();
-  if (patches.outlines.empty()) return;
+  if (mesh.patches().outlines.empty()) return;
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   std::size_t begin = 0;
   for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
     const std::size_t end = begin + mesh.leaves_under(transport_leaves[j]);
-    const std::size_t patch = mesh[transport_leaves[j]].patch;
-    if (patches.outlines[patches.triangle[patch]][patches.side[patch]] != 0)
+    if (has_outlines(mesh.patches(), mesh[transport_leaves[j]].patch))
       for (int c = 0; c < E.channels; ++c) {
         double flux = 0, area = 0;
         for (std::size_t k = begin; k < end; ++k) {
@@ -203,10 +207,11 @@ void keep_flux_at_outlines(const ElementMesh& mesh, std::span<const std::uint32_
 
 /// Scales what the field has of all light but that of sun and luminaires, so that its flux is that of the transport:
 /// the vertices share their directions, and so a small error, while the bundles of the elements are independent of each
-/// other. What differs by more is no such error, and stays. Where a luminaire is near a surface the spot there sends
-/// most of the light on, and each vertex sees it by the same few rays: their error is shared, and larger.
-void correct_flux(const HierarchicalSolution& coarse, const Field& E, const ElementMesh& mesh, bool any_near,
-                  VertexField& field) {
+/// other. Elements beside slits have their own flux already. What differs by more is no such error, and stays. Where a
+/// luminaire is near a surface the spot there sends most of the light on, and each vertex sees it by the same few rays:
+/// their error is shared, and larger.
+void correct_flux(const HierarchicalSolution& coarse, std::span<const std::uint32_t> transport_leaves, const Field& E,
+                  const ElementMesh& mesh, bool any_near, VertexField& field) {
   // Totals of fields were 0.1 to 0.3 % low before this, and no scene came near 1 %; beside lamps up to 6 % off.
   const double most = any_near ? 0.1 : 0.01;
   if (!field.complete || coarse.delta_light.value.empty()) return;
@@ -216,9 +221,15 @@ void correct_flux(const HierarchicalSolution& coarse, const Field& E, const Elem
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   for (int c = 0; c < rest.channels; ++c) {
     double found = 0, exact = 0;
-    for (std::size_t j = 0; j < coarse.elements.patch_count(); ++j)
+    for (std::size_t j = 0, i = 0; j < transport_leaves.size(); ++j) {
+      const std::size_t end = i + mesh.leaves_under(transport_leaves[j]);
+      if (has_outlines(mesh.patches(), mesh[transport_leaves[j]].patch)) {
+        i = end;
+        continue;
+      }
       exact += coarse.elements.area[j] * (E.at(j, c) - coarse.delta_light.at(j, c));
-    for (std::size_t i = 0; i < leaves.size(); ++i) found += mesh[leaves[i]].area * on_leaves.at(i, c);
+      for (; i < end; ++i) found += mesh[leaves[i]].area * on_leaves.at(i, c);
+    }
     const double ratio = found > 0 ? exact / found : 1;
     if (std::abs(ratio - 1) > most) continue;
     for (std::size_t p = 0; p < rest.size(); ++p) field.E.at(p, c) = field.delta_light.at(p, c) + ratio * rest.at(p, c);
@@ -282,14 +293,15 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
                          std::to_string(mesh.points().position.size()) + " points");
   if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
   const NearLuminaires near = near_luminaires(mesh, transport_leaves, coarse, field, problem.lights);
-  correct_flux(coarse, solution.E, mesh, !near.among_leaves.empty(), field);
+  correct_flux(coarse, transport_leaves, solution.E, mesh, !near.among_leaves.empty(), field);
   fill_unknown(mesh, transport_leaves, coarse.elements, solution.E, field);
   std::vector<bool> spot;
   for (std::size_t j = 0; j < coarse.elements.spot.size(); ++j)
     spot.insert(spot.end(), mesh.leaves_under(transport_leaves[j]), coarse.elements.spot[j]);
   coarse.elements = {};  // a million of them are a third of a gigabyte
   HierarchicalField out{mesh.leaf_patches(), {}, {}, {}};
-  Field E = field_on_leaves(mesh, transport_leaves, coarse, field, near, {out.elements, problem.rays, problem.lights});
+  Field E = field_on_leaves(mesh, transport_leaves, coarse, field, near, {out.elements, problem.rays, problem.lights},
+                            of_elements.seed);
   keep_flux_at_outlines(mesh, transport_leaves, solution.E, E);
   solution.E = std::move(E);
   if (of_layers) {

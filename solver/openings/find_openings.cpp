@@ -27,7 +27,7 @@ constexpr double kDarker = 0.1;                    ///< of what one side of a sl
 constexpr double kDarkerByFew = 0.5;               ///< the same, to sift
 constexpr int kWalks = 8;                          ///< for each of those rays, to judge how bright a side is
 constexpr std::size_t kFewLuminaires = 16;         ///< that are asked for it
-constexpr std::size_t kMostSlits = 500;            ///< that are judged by walks, the largest
+constexpr std::size_t kMostSlits = 200;            ///< that are judged by walks, the largest
 constexpr std::size_t kMostDarkSlits = 100;        ///< of those kept through which no sky is seen
 constexpr double kNew = 0.1;                       ///< of the rays out, those that see sky which no other opening shows
 constexpr std::size_t kMostCorners = 256;          ///< of an outline; a window has few
@@ -222,6 +222,7 @@ std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& ra
     if (candidates[k].is_dark_slit && dark_slits == kMostDarkSlits) break;
     if (!judge.shows_more(candidates[k].opening, openings, stream_key(kGapsSifted, k))) continue;
     dark_slits += candidates[k].is_dark_slit;
+    candidates[k].opening.sees_sky = !candidates[k].is_dark_slit;
     openings.push_back(std::move(candidates[k].opening));
   }
   // The inner face of a thick wall may have come before the outer one.

@@ -212,7 +212,7 @@ void search_lights(const Problem& problem, const Field& glow, const std::vector<
         found[k] = look_for_lights(problem, emitters, receivers[begin + k], stride, samples, seed);
     });
     for (std::size_t k = 0; k < found.size(); ++k) {
-      if (found[k].lit) spaces.light_outdoors(problem.patches, receivers[begin + k]);
+      if (found[k].lit) spaces.light(receivers[begin + k]);
       for (const PatchId q : found[k].glowing) spaces.see_each_other(problem.patches, receivers[begin + k], q);
     }
   }

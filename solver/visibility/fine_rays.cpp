@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 #include <embree3/rtcore.h>
 
 #include "solver/model/parallel.h"
+#include "solver/visibility/embree_device.h"
 
 namespace clerestory {
 namespace {
@@ -30,7 +29,7 @@ struct FineRays::Impl {
   const std::vector<std::array<VertexId, 3>>& corners;
   double diameter;
   std::vector<bool> is_glass;
-  RTCDevice device = nullptr;
+  EmbreeDevice device;
   RTCScene scene = nullptr;
 
   Impl(const std::vector<Vec3>& v, const std::vector<std::array<VertexId, 3>>& c, double d)
@@ -39,7 +38,6 @@ struct FineRays::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
   }
 
   /// By the signs of the ray's moments about the edges, which two triangles compute alike for the edge they share.
@@ -115,11 +113,9 @@ FineRays::FineRays(const PatchSet& patches, const std::vector<Vec3>& vertices,
   Impl& self = *impl_;
   for (std::size_t t = 0; t < patches.triangle_count(); ++t)
     self.is_glass.push_back(patches.front_material(TriangleId{t}).lets_rays_pass());
-  self.device = rtcNewDevice("set_affinity=0");
-  if (!self.device) throw std::runtime_error("Embree: no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
-  self.scene = rtcNewScene(self.device);
+  self.scene = rtcNewScene(self.device.handle);
   rtcSetSceneFlags(self.scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(self.device, RTC_GEOMETRY_TYPE_USER);
+  RTCGeometry geometry = rtcNewGeometry(self.device.handle, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(self.corners.size()));
   rtcSetGeometryUserData(geometry, &self);
   rtcSetGeometryBoundsFunction(geometry, Impl::bounds, nullptr);
@@ -128,6 +124,7 @@ FineRays::FineRays(const PatchSet& patches, const std::vector<Vec3>& vertices,
   rtcAttachGeometry(self.scene, geometry);
   rtcReleaseGeometry(geometry);
   on_one_thread([&] { rtcCommitScene(self.scene); });
+  self.device.check();
 }
 FineRays::FineRays(FineRays&&) noexcept = default;
 FineRays& FineRays::operator=(FineRays&&) noexcept = default;

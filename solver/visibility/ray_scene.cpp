@@ -8,7 +8,10 @@
 
 #include <embree3/rtcore.h>
 
+#include "solver/geometry/triangle.h"
+#include "solver/model/coordinate_grid.h"
 #include "solver/model/parallel.h"
+#include "solver/visibility/embree_device.h"
 #include "solver/visibility/fine_rays.h"
 #include "solver/visibility/glass_sheet.h"
 #include "solver/visibility/tight_places.h"
@@ -20,21 +23,7 @@ constexpr int kMostReflections = 64;     // of one ray; what is left is lost
 constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of luminaires
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kLift = 5e-7;       // of the diameter: a few units in the last place at the rim of the scene
-constexpr double kFineLift = 1e-12;  // of the diameter: far above double's rounding, far below what meshing keeps apart
-constexpr double kGrid = 2.5e-10;    // of the diameter: meshing moves vertices by half of that (meshing/clean.cpp)
-
-struct Device {
-  RTCDevice handle = rtcNewDevice("set_affinity=0");
-  Device() {
-    if (handle) return;
-    const RTCError error = rtcGetDeviceError(nullptr);
-    if (error == RTC_ERROR_UNSUPPORTED_CPU) throw std::runtime_error("Embree does not run on this processor");
-    throw std::bad_alloc();  // it wants memory and threads, and says "unknown" for both
-  }
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
-  ~Device() { rtcReleaseDevice(handle); }
-};
+constexpr double kFineLift = 1e-12;  // of the diameter: far above double's rounding, far below the coordinates' grid
 
 /// One Embree scene over some triangles of the PatchSet; primitive k is triangle of_primitive[k].
 struct Surfaces {
@@ -47,15 +36,15 @@ struct Surfaces {
     if (handle) rtcReleaseScene(handle);
   }
 
-  void build(RTCDevice device, const PatchSet& patches, bool glass) {
+  void build(const EmbreeDevice& device, const PatchSet& patches, bool glass) {
     for (std::size_t t = 0; t < patches.triangle_count(); ++t)
       if (patches.front_material(TriangleId{t}).lets_rays_pass() == glass)
         of_primitive.push_back(static_cast<std::uint32_t>(t));
-    handle = rtcNewScene(device);
+    handle = rtcNewScene(device.handle);
     rtcSetSceneFlags(handle, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(handle, RTC_BUILD_QUALITY_MEDIUM);
     if (!of_primitive.empty()) {
-      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+      RTCGeometry geometry = rtcNewGeometry(device.handle, RTC_GEOMETRY_TYPE_TRIANGLE);
       auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), patches.vertices.size()));
       auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -70,7 +59,7 @@ struct Surfaces {
       rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(handle);
-    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::bad_alloc();
+    device.check();
   }
 
   /// Calls found(triangle) for the triangles whose boxes come within `reach` of p.
@@ -113,7 +102,7 @@ RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float
 }  // namespace
 
 struct RayScene::Impl {
-  Device device;
+  EmbreeDevice device;
   Surfaces opaque, glass;
   std::vector<GlassTable> glass_kinds;
   std::vector<std::uint32_t> kind_of_glass;  ///< by triangle; empty without glass
@@ -195,15 +184,16 @@ struct RayScene::Impl {
     return hit;
   }
 
-  /// Goes on from a hit as long as it is on a mirror.
-  void follow_mirrors(const PatchSet& patches, const Ray& first, Hit& hit) const {
+  /// Goes on from a hit as long as it is on a mirror. share: of the lift.
+  void follow_mirrors(const PatchSet& patches, const Ray& first, double share, Hit& hit) const {
     Ray ray = first;
     for (int k = 0; k < kMostReflections; ++k) {
       const Mirror* mirror = mirror_at(hit.triangle);
       if (!mirror) return;
       const double along = dot(mirror->normal, ray.direction);
       const Vec3 n = along < 0 ? mirror->normal : -mirror->normal;
-      ray = {off_surface(hit.position(first), n, 1), ray.direction - mirror->normal * (2 * along)};
+      const Vec3 met = hit.position(first), x = met - mirror->normal * (dot(mirror->normal, met) - mirror->offset);
+      ray = {off_surface(x, n, share), ray.direction - mirror->normal * (2 * along)};
       const Spectrum so_far = hit.transmittance * mirror->reflectance;
       const double to_first = hit.first;
       hit = one_leg(patches, ray);
@@ -269,8 +259,8 @@ RayScene::RayScene(const PatchSet& patches) {
   impl->corners = patches.corners;
   impl->diameter = patches.vertices.empty() ? 0 : length(upper - lower);
   on_one_thread([&] {  // the tree decides which of two equally near triangles is met
-    impl->opaque.build(impl->device.handle, patches, false);
-    impl->glass.build(impl->device.handle, patches, true);
+    impl->opaque.build(impl->device, patches, false);
+    impl->glass.build(impl->device, patches, true);
   });
   impl->tabulate_glass(patches);
   impl->find_mirrors(patches);
@@ -295,8 +285,9 @@ bool RayScene::is_tight(const Vec3& p) const { return impl_->tight.contains(p); 
 double RayScene::diameter() const { return impl_->diameter; }
 
 Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
-  if (is_tight(p)) return p + n * (kFineLift * impl_->diameter);
-  const double in_plane = kGrid * impl_->diameter;
+  const double in_plane = kCoordinateGrid * impl_->diameter,
+               off = is_tight(p) ? lift_share_ * kFineLift * impl_->diameter : lift();
+  const double reach = std::max(off, in_plane);
   std::vector<TriangleId> near;
   const auto note = [&](TriangleId t) { near.push_back(t); };
   for (const Surfaces* surfaces : {&impl_->opaque, &impl_->glass}) surfaces->visit_near(p, 2 * lift(), note);
@@ -305,11 +296,11 @@ Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
   for (const TriangleId t : near) {
     const std::array c{impl_->vertices[impl_->corners[t][0]], impl_->vertices[impl_->corners[t][1]],
                        impl_->vertices[impl_->corners[t][2]]};
-    if (distance2_to_triangle(at, c) >= lift() * lift()) continue;
+    if (length(at - nearest_point(c, at)) >= reach) continue;
     const Vec3 normal = normalized(cross(c[1] - c[0], c[2] - c[0]));
     const double h = dot(normal, at - c[0]);
     const bool is_above = std::abs(h) > in_plane ? h > 0 : dot(normal, n) >= 0;
-    at += normal * ((is_above ? lift() : -lift()) - h);
+    if (std::abs(h) < off || std::abs(h) <= in_plane) at += normal * ((is_above ? off : -off) - h);
   }
   return at;
 }
@@ -342,7 +333,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       if (has_tight_places() && (impl_->tight.is_tight(hit.triangle) || is_tight(sent.origin) ||
                                  (!hit.escaped() && is_tight(hit.position(sent))))) {
         hit = impl_->fine_leg(patches, rays[first + k]);
-        if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], hit);
+        if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], lift_share_, hit);
         continue;
       }
       if (!hit.escaped()) {
@@ -355,14 +346,14 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
         const Ray& ray = rays[first + k];
         hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
       }
-      if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], hit);
+      if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], lift_share_, hit);
     }
   }
 }
 
 Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray) const {
   Hit hit = impl_->one_leg(patches, ray);
-  if (has_mirrors()) impl_->follow_mirrors(patches, ray, hit);
+  if (has_mirrors()) impl_->follow_mirrors(patches, ray, lift_share_, hit);
   return hit;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/geometry/triangle.h"
 #include "solver/model/parallel.h"
 
 namespace clerestory {
@@ -12,6 +13,9 @@ constexpr double kReach = 2;        // lifts: what is further apart than that a 
 constexpr double kBesideEdge = 10;  // reaches: from there on surfaces that meet at atan(1 / 10) are far enough apart
 constexpr double kShareOfHeight = 6e-4;  // of a triangle over its edge: vertices are evaluated that near to it
 constexpr double kRounding = 0.05;       // reaches: what float moves a point sideways
+constexpr double kSamePlane = 1e-3;      // reaches: two coordinates on the grid of meshing, and what a sliver leans
+
+double distance(const Vec3& p, const std::array<Vec3, 3>& triangle) { return length(p - nearest_point(triangle, p)); }
 
 /// The space over and under a triangle, up to `reach` from it, short of its edges by its insets.
 class Prism {
@@ -39,7 +43,12 @@ class Prism {
     for (std::size_t k = 0; k < 3; ++k)
       if (depth(k, other[0]) < inset_[k] && depth(k, other[1]) < inset_[k] && depth(k, other[2]) < inset_[k])
         return false;
-    return !clip(other).empty();
+    const std::vector<Vec3> inside = clip(other);
+    if (inside.empty()) return false;
+    const bool faces_alike = dot(normal_, cross(other[1] - other[0], other[2] - other[0])) > 0;
+    return !faces_alike || std::ranges::any_of(inside, [&](const Vec3& p) {
+      return std::abs(dot(normal_, p - corner_[0])) > kSamePlane * reach_;
+    });
   }
 
  private:
@@ -71,28 +80,6 @@ class Prism {
 };
 
 }  // namespace
-
-double distance2_to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
-  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
-  const auto to = [&](const Vec3& q) { return dot(p - q, p - q); };
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return to(t[0]);
-  const Vec3 bp = p - t[1];
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return to(t[1]);
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return to(t[0] + ab * (d1 / (d1 - d3)));
-  const Vec3 cp = p - t[2];
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return to(t[2]);
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return to(t[0] + ac * (d2 / (d2 - d6)));
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return to(t[1] + (t[2] - t[1]) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
-  const Vec3 n = cross(ab, ac);
-  const double h = dot(n, ap);
-  return h * h / dot(n, n);
-}
 
 TightPlaces::TightPlaces(const PatchSet& patches, double lift) : reach_(kReach * lift) {
   const std::size_t count = patches.triangle_count();
@@ -161,7 +148,7 @@ void TightPlaces::Cells::mark(const std::array<Vec3, 3>& triangle, double reach,
     if (half[k] > half[longest]) longest = k;
   }
   const double far = std::hypot(half[0], half[1], half[2]) + reach;
-  if (distance2_to_triangle(lower_ + Vec3{middle[0], middle[1], middle[2]}, triangle) > far * far) return;
+  if (distance(lower_ + Vec3{middle[0], middle[1], middle[2]}, triangle) > far) return;
   const auto [begin, end] = range[longest];
   if (end - begin == 1) {
     is_near_[(range[2][0] * count_[1] + range[1][0]) * count_[0] + range[0][0]] = true;
@@ -189,7 +176,7 @@ bool TightPlaces::contains(const Vec3& p) const {
         return !found && p.x >= box.lower.x && p.x <= box.upper.x && p.y >= box.lower.y && p.y <= box.upper.y &&
                p.z >= box.lower.z && p.z <= box.upper.z;
       },
-      [&](std::uint32_t k) { found = found || distance2_to_triangle(p, triangles_[k]) <= reach_ * reach_; });
+      [&](std::uint32_t k) { found = found || distance(p, triangles_[k]) <= reach_; });
   return found;
 }
 

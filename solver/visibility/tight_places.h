@@ -51,7 +51,4 @@ class TightPlaces {
   Cells cells_;
 };
 
-/// Square of the distance from p to a triangle [m2]. Source: Ericson, "Real-time collision detection", 2005, 5.1.5.
-double distance2_to_triangle(const Vec3& p, const std::array<Vec3, 3>& triangle);
-
 }  // namespace clerestory

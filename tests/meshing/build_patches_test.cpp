@@ -375,6 +375,20 @@ TEST(BuildPatches, APaneBeforeAWallDoesNotOpenIt) {
   }
 }
 
+TEST(BuildPatches, AMirrorOrADiffuserOnAWallHidesIt) {
+  for (const MaterialKind kind : {MaterialKind::mirror, MaterialKind::diffuser})
+    for (const double gap : {0.0, 1e-7, 1e-6}) {
+      MaterialId wall, sheet;
+      SceneMaker maker = ceiling_and_panel(gap, wall, sheet);
+      maker.edit(sheet).kind = kind;
+      const PatchSet p = mesh(maker, 0.5).patches;
+      for (const Side side : {kFront, kBack}) {
+        EXPECT_NEAR(area_of(p, wall, side), 12, 16 * kRounding) << gap;
+        EXPECT_NEAR(area_of(p, sheet, side), 4, 16 * kRounding) << gap;
+      }
+    }
+}
+
 TEST(BuildPatches, SolidsThatShareAWallInPartHaveItOnce) {
   SceneMaker maker;
   maker.box({0, 0, 0}, {2, 2, 2});

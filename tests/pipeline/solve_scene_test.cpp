@@ -167,6 +167,25 @@ TEST(SolveScene, KeepsTheEnergyOfALampHoweverNearToAWall) {
     }
 }
 
+TEST(SolveScene, KeepsTheLightOfADownlightInThePlaneOfACeilingAtAnyHeight) {
+  // Heights that double holds exactly, and such that it does not: meshing rounds both.
+  for (const double height : {2.5, 2.65, 2.7, 2.75, 3.1, 3.33}) {
+    SCOPED_TRACE(testing::Message() << height << " m");
+    Scene scene = glowing_box();
+    scene.materials[0].exitance = Spectrum(0.0);
+    for (Vec3& v : scene.polygons.vertices)
+      if (v.z > 1) v.z = height;
+    SpotLuminaire down{{0, 0, -1}, Spectrum(1.0), 0.5, 1.0};
+    scene.lights.luminaires.push_back({"downlight", {1.7, 1.1, height}, {}, down});
+    const Solved s = solve_scene(scene, draft());
+    double received = 0;
+    for (std::size_t i = 0; i < s.patches.patch_count(); ++i) received += s.patches.area[i] * s.solution.E[i][0];
+    EXPECT_NEAR(received * (1 - 0.5) / s.solution.energy.emitted, 1, 5e-3);
+    EXPECT_GT(s.solution.energy.emitted, 1);
+    EXPECT_NEAR(s.solution.energy.imbalance(), 0, 1e-3);
+  }
+}
+
 TEST(SolveScene, LeavesNothingNegativeInANarrowWedgeUnderTheSky) {
   // Two squares of 1 m that meet in an edge at 0.1 degrees: between them each hides nearly all of the sky.
   Scene scene;

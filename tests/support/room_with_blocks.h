@@ -10,6 +10,12 @@
 
 namespace clerestory::test {
 
+/// Both sides of every triangle take part.
+inline PatchSet two_sided(PatchSet patches) {
+  make_patches(patches, std::vector<bool>(2 * patches.triangle_count(), true));
+  return patches;
+}
+
 /// Puts rectangles of triangles together to a PatchSet of one-sided patches. Triangles share no vertices, which the
 /// solver does not need.
 class PatchBuilder {

@@ -82,7 +82,7 @@ TEST_F(GradedRoom, RaysMeetTheLeafThatHoldsThePoint) {
     const Vec3 from = Vec3{0.8, 0.8, 0.5} - room.patches.origin, d = sphere_direction(u[0], u[1]);
     const Hit hit = room.rays.first_hit(leaves, {from, d});
     ASSERT_TRUE(hit.patch.valid());
-    const Vec3 at = from + d * double{hit.distance};
+    const Vec3 at = from + d * hit.distance;
     const auto x = leaves.corner_positions(hit.patch);
     // Inside to within single precision: no barycentric weight below zero by more than the hit's rounding.
     for (std::size_t i = 0; i < 3; ++i) {

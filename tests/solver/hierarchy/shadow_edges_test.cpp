@@ -111,7 +111,7 @@ TEST(ShadowEdges, LeaveASoundMeshOfTrianglesThatAreNotTooThin) {
     const Hit hit = floor.room.rays.first_hit(leaves, {from, {0, 0, -1}});
     ASSERT_TRUE(hit.patch.valid());
     const auto x = leaves.corner_positions(hit.patch);
-    const Vec3 at = from - Vec3{0, 0, 1} * double{hit.distance};
+    const Vec3 at = from - Vec3{0, 0, 1} * hit.distance;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 edge = x[(i + 1) % 3] - x[i], inward = cross(leaves.normal[hit.patch], edge);
       EXPECT_GT(dot(at - x[i], inward) / length(inward), -2e-5);

@@ -112,6 +112,23 @@ TEST(FindOpenings, AClosedRoomHasNoneNorHasASceneWithoutSky) {
   EXPECT_TRUE(Found(window, false).lights.openings.empty());
 }
 
+TEST(FindOpenings, ThoseThatSeeTheSkyComeBeforeSlitsThatDoNot) {
+  // A window, and a bright room beside this one whose wall ends 2 mm below the common ceiling.
+  SceneMaker m;
+  add_sheets(m, false, true);
+  add_holed_facade(m, 1, 1, 3, 2);
+  m.polygon({{4, 0, 0}, {8, 0, 0}, {8, 4, 0}, {4, 4, 0}});
+  m.polygon({{4, 0, 3.002}, {4, 4, 3.002}, {8, 4, 3.002}, {8, 0, 3.002}});
+  m.polygon({{4, 4, 0}, {8, 4, 0}, {8, 4, 3.002}, {4, 4, 3.002}});
+  m.polygon({{4, 0, 0}, {4, 0, 3.002}, {8, 0, 3.002}, {8, 0, 0}});
+  m.polygon({{8, 0, 0}, {8, 0, 3.002}, {8, 4, 3.002}, {8, 4, 0}});
+  const Found found(m);
+  ASSERT_FALSE(found.lights.openings.empty());
+  EXPECT_TRUE(found.lights.openings.front().sees_sky);
+  EXPECT_TRUE(std::ranges::is_partitioned(found.lights.openings, [](const LightArea& o) { return o.sees_sky; }));
+  EXPECT_EQ(found.lights.sky_openings().size(), 1u);
+}
+
 TEST(WayOut, IsTheDistanceToAnOpeningThatIsPassedOutwards) {
   SceneMaker m;
   add_sheets(m, false, true);

@@ -10,12 +10,7 @@ namespace clerestory {
 namespace {
 
 using test::PatchBuilder;
-
-/// Both sides of every triangle take part.
-PatchSet two_sided(PatchSet patches) {
-  make_patches(patches, std::vector<bool>(2 * patches.triangle_count(), true));
-  return patches;
-}
+using test::two_sided;
 
 TEST(RayScene, MeetsTheNearestTriangleOnTheSideItFaces) {
   PatchBuilder b;

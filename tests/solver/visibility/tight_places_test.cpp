@@ -15,11 +15,7 @@ namespace clerestory {
 namespace {
 
 using test::PatchBuilder;
-
-PatchSet two_sided(PatchSet patches) {
-  make_patches(patches, std::vector<bool>(2 * patches.triangle_count(), true));
-  return patches;
-}
+using test::two_sided;
 
 /// Something far away, so that the scene's diameter is about `diameter` and rounding is that of its rim.
 PatchBuilder& widen(PatchBuilder& b, double diameter) {
@@ -37,8 +33,9 @@ PatchSet two_sheets(double gap, double z, double diameter) {
 
 TEST(TightPlaces, AreWhereAnotherSurfaceIsNearerThanTwoLifts) {
   const double lift = 1e-5;
-  for (const double gap : {1e-9, 1e-6, 1.9e-5}) EXPECT_TRUE(TightPlaces(two_sheets(gap, 0.3, 20), lift).any()) << gap;
+  for (const double gap : {1e-7, 1e-6, 1.9e-5}) EXPECT_TRUE(TightPlaces(two_sheets(gap, 0.3, 20), lift).any()) << gap;
   for (const double gap : {2.1e-5, 1e-3}) EXPECT_FALSE(TightPlaces(two_sheets(gap, 0.3, 20), lift).any()) << gap;
+  EXPECT_FALSE(TightPlaces(two_sheets(0, 0.3, 20), lift).any());  // faces alike in one plane
   const PatchSet sheets = two_sheets(1e-6, 0.3, 20);
   const TightPlaces tight(sheets, lift);
   EXPECT_TRUE(tight.contains({0.5, 0.5, 0.3}));
@@ -64,9 +61,9 @@ TEST(TightPlaces, AreTheEdgesOfSharpWedgesOnly) {
 }
 
 TEST(RaysInTightPlaces, MeetTheSheetThatIsFirstWhateverTheGap) {
-  // Float at 5 to 50 m tells 0.5 to 4 um apart; the gaps go down to 1e-9 of the diameter.
+  // Float at 5 to 50 m tells 0.5 to 4 um apart; the gaps go down to 2e-9 of the diameter.
   for (const double diameter : {20.0, 200.0})
-    for (const double gap : {1e-9 * diameter, 1e-8 * diameter, 1e-7 * diameter, 5e-7 * diameter, 1e-6 * diameter}) {
+    for (const double gap : {2e-9 * diameter, 1e-8 * diameter, 1e-7 * diameter, 5e-7 * diameter, 1e-6 * diameter}) {
       SCOPED_TRACE(testing::Message() << "diameter " << diameter << " m, gap " << gap << " m");
       const double z = 0.29 * diameter;
       const PatchSet patches = two_sheets(gap, z, diameter);
@@ -116,7 +113,7 @@ TEST(RaysInTightPlaces, PacketsAndSingleRaysMeetTheSame) {
 }
 
 TEST(RaysInTightPlaces, CountEveryPaneOfGlassAndNoneBehindAWall) {
-  for (const double gap : {1e-8, 1e-6, 1e-5, 1e-3}) {
+  for (const double gap : {5e-8, 1e-6, 1e-5, 1e-3}) {
     SCOPED_TRACE(testing::Message() << "gap " << gap << " m");
     PatchBuilder b;
     b.glass(0.6);
@@ -138,7 +135,7 @@ TEST(RaysInTightPlaces, CountEveryPaneOfGlassAndNoneBehindAWall) {
 }
 
 TEST(RaysInTightPlaces, AMirrorAHairBeforeAWallReflects) {
-  for (const double gap : {1e-8, 1e-6, 1e-5, 1e-3}) {
+  for (const double gap : {5e-8, 1e-6, 1e-5, 1e-3}) {
     PatchBuilder b;
     b.mirror(0.9).rectangle({0, 0, 5}, {1, 0, 0}, {0, 1, 0});
     b.material(0.5).rectangle({0, 0, 5 + gap}, {1, 0, 0}, {0, 1, 0}).rectangle({0, 0, 4}, {1, 0, 0}, {0, 1, 0});
@@ -169,6 +166,26 @@ TEST(BesideSurfaces, APointSeesTheSpaceThatItIsIn) {
   EXPECT_FALSE(sees_up(0, down));
   const Vec3 in_the_air{0.3, 0.4, 5.2};
   EXPECT_EQ(rays.beside_surfaces(in_the_air, up), in_the_air);
+}
+
+TEST(BesideSurfaces, APointInAGapSeesTheGapOnly) {
+  for (const double gap : {1e-7, 1e-6, 1e-5}) {
+    const PatchSet patches = two_sheets(gap, 5.1, 20);
+    const RayScene rays(patches);
+    ASSERT_TRUE(rays.is_tight({0.3, 0.4, 5.1}));
+    const auto first_from = [&](double h, const Vec3& n, const Vec3& d) {
+      return rays.first_hit(patches, {rays.beside_surfaces({0.3, 0.4, 5.1 + h}, n), d});
+    };
+    const Vec3 up{0, 0, 1}, down{0, 0, -1};
+    for (const double h : {0.0, gap / 2, gap}) {
+      SCOPED_TRACE(::testing::Message() << "gap " << gap << " m, at " << h);
+      const Vec3 n_up = h == gap ? down : up;  // into the gap
+      EXPECT_LT(first_from(h, n_up, up).distance, 2e-5);
+      EXPECT_LT(first_from(h, n_up, down).distance, 2e-5);
+    }
+    EXPECT_TRUE(first_from(gap, up, up).escaped());
+    EXPECT_TRUE(first_from(0, down, down).escaped());
+  }
 }
 
 }  // namespace

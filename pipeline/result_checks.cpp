@@ -1,5 +1,6 @@
 #include "pipeline/result_checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -36,12 +37,33 @@ void warn_about_error(const Solved& s, Observer& observer) {
                 "smaller --max-element or --target-error.");
 }
 
+void warn_about_sensors(const Solved& s, Observer& observer) {
+  if (!s.error || s.sensor_E.size() == 0) return;  // nothing was measured
+  double most = 0;
+  for (std::size_t k = 0; k < s.sensor_E.size(); ++k) most = std::max(most, photometric(s.sensor_E[k]));
+  if (!s.error_sensors) {
+    if (most == 0 || s.buried_sensors >= s.sensor_E.size()) return;
+    observer.warn(
+        "how wrong the sensors are is not known: they show up to " + rounded(most) +
+        " lx, but no light was found on the paths that measure the error, so it comes through a gap too small "
+        "for them. Close the gap in the model, or do not rely on these values.");
+    return;
+  }
+  const double stated = effort(s.settings.solve.accuracy).vertex_tolerance;
+  if (s.error_sensors->rms_relative - s.error_sensors->confidence <= stated) return;
+  observer.warn("the measured error of the sensors is " + percent(s.error_sensors->rms_relative) + " rms (+- " +
+                percent(s.error_sensors->confidence) + "), more than the " + percent(stated) +
+                " that this accuracy stands for: their light comes from little lamps, through narrow gaps or over many "
+                "surfaces. Do not rely on single values; try --accuracy fine.");
+}
+
 }  // namespace
 
 void warn_about_result(const Solved& solved, Observer& observer) {
   if (solved.empty()) return;
   warn_about_energy(solved.solution.energy, observer);
   warn_about_error(solved, observer);
+  warn_about_sensors(solved, observer);
 }
 
 }  // namespace clerestory

@@ -147,7 +147,7 @@ BfLinks bf_refine(const Problem& problem, const ElementTree& tree, const Field& 
   }
   BfLinks out;
   Transport& transport = out.transport;
-  Closure closure = measure_closure(problem.patches, problem.rays, kRaysForClosure, options.seed);
+  Closure closure = measure_closure(problem, kRaysForClosure, options.seed);
   transport.arrives.resize(n), transport.escapes.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     transport.arrives[i] = static_cast<float>(luminous_mean(closure.arrives[i]));

@@ -6,6 +6,7 @@
 #include "solver/illumination/problem.h"
 #include "solver/lights/sky.h"
 #include "solver/openings/opening_sampler.h"
+#include "solver/openings/openings.h"
 
 namespace clerestory {
 
@@ -13,13 +14,18 @@ struct Illumination {
   const Problem& problem;
   LightSampler sampler;
   SkyRadiance sky;
-  OpeningSampler openings;
+  OpeningSampler openings;     ///< that the sky is seen through
+  OpeningSampler slits;        ///< that rays meet by chance only, and surfaces are seen through
   BrightAreas bright_areas{};  ///< for a gather; see look_at_bright_areas()
 
   explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}
   /// glow: see LightSampler; outlives this.
   Illumination(const Problem& p, const Field& glow)
-      : problem(p), sampler(p, glow), sky(p.lights), openings(p.lights.sky_openings(), p.rays.diameter()) {}
+      : problem(p),
+        sampler(p, glow),
+        sky(p.lights),
+        openings({p.lights.sky_openings().begin(), p.lights.sky_openings().end()}, p.rays.diameter()),
+        slits(slits_among(p.lights.openings), p.rays.diameter()) {}
   /// Lets a gather look at bright patches that lie together as one.
   void look_at_bright_areas() { bright_areas = find_bright_areas(problem.patches, sampler); }
 };

@@ -369,7 +369,8 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
   F.row_sum = F.raw_row_sum;
   if (!F.complete) return F;
 
-  const Closure closure = measure_closure(patches, rays, kRaysForClosure, options.seed);
+  const Lights dark;
+  const Closure closure = measure_closure({patches, rays, dark}, kRaysForClosure, options.seed);
   F.rays += closure.rays;
   for (std::size_t i = 0; i < n; ++i) {
     bool all_arrives = true;

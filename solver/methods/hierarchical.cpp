@@ -253,7 +253,7 @@ HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh
   const bool late = ambient_only || monitor.should_stop();
   const DirectLight direct = direct_light(
       light, {.shadow_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
-  const Closure closure = measure_closure(problem.patches, problem.rays, late ? 8 : 16, options.seed);
+  const Closure closure = measure_closure(problem, late ? 8 : 16, options.seed);
   out.solution = shoot(
       problem, direct, closure,
       {.stop_fraction = 0.03, .rays_per_patch = 32, .max_rounds = late ? 0 : 1000, .seed = options.seed}, monitor);

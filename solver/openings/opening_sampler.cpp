@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "solver/openings/openings.h"
 #include "solver/sampling/polygon_view.h"
@@ -22,9 +23,9 @@ LightBounds bounds_of(const LightArea& opening) {
 
 }  // namespace
 
-OpeningSampler::OpeningSampler(std::span<const LightArea> openings, double extent) : openings_(openings) {
+OpeningSampler::OpeningSampler(std::vector<LightArea> openings, double extent) : openings_(std::move(openings)) {
   std::vector<LightBounds> bounds;
-  for (const LightArea& opening : openings) bounds.push_back(bounds_of(opening));
+  for (const LightArea& opening : openings_) bounds.push_back(bounds_of(opening));
   tree_ = LightTree(bounds, Falloff::cosine, extent);
 }
 

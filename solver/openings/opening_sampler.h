@@ -1,8 +1,8 @@
 #pragma once
-// Chooses openings to look for the sky through, by what they can give where light is asked for.
+// Chooses openings to look through, by what they can give where light is asked for.
 
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "solver/lights/light_tree.h"
 #include "solver/lights/lights.h"
@@ -11,10 +11,12 @@ namespace clerestory {
 
 class OpeningSampler {
  public:
-  /// openings  outlive the sampler. extent: see LightTree.
-  OpeningSampler(std::span<const LightArea> openings, double extent);
+  /// extent: see LightTree.
+  OpeningSampler(std::vector<LightArea> openings, double extent);
 
   bool empty() const { return tree_.empty(); }
+  /// Whether sample() may find any there.
+  bool reaches(const Vec3& p, const Vec3& n) const { return !empty() && tree_.reaches(p, n); }
 
   struct Sample {
     Vec3 direction;             ///< unit
@@ -30,7 +32,7 @@ class OpeningSampler {
   double preference(const Vec3& p, const Vec3& n, const Vec3& d, std::uint32_t but = 0xffffffff) const;
 
  private:
-  std::span<const LightArea> openings_;
+  std::vector<LightArea> openings_;
   LightTree tree_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "solver/form_factors/point_to_polygon.h"
@@ -55,6 +56,12 @@ double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n) {
 bool is_slit(const LightArea& opening) {
   constexpr double kNarrow = 0.02;  // of its length: windows are wider
   return opening.area < kNarrow * 4 * opening.radius * opening.radius;
+}
+
+std::vector<LightArea> slits_among(std::span<const LightArea> openings) {
+  std::vector<LightArea> slits;
+  std::ranges::copy_if(openings, std::back_inserter(slits), is_slit);
+  return slits;
 }
 
 Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {

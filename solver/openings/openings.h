@@ -38,6 +38,7 @@ Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, s
 
 /// Whether it is so narrow that rays meet it by chance only.
 bool is_slit(const LightArea& opening);
+std::vector<LightArea> slits_among(std::span<const LightArea> openings);
 
 /// The gaps in the surfaces that have the sky on one side and a room on the other: windows, doors, rooflights, slits.
 /// Slits also where surfaces are seen by them of which one side's are many times as bright.

@@ -37,13 +37,45 @@ Vec3 in_plane_of(const PatchSet& patches, PatchId p, const Vec3& x) {
   return x - n * dot(n, x - patches.vertices[patches.corners[patches.triangle[p]][0]]);
 }
 
+/// Where a path goes on. Mostly in proportion to the cosine; where there are slits, half of the paths through one of
+/// them: others find them once in a thousand times. Either way counts by its share of both densities.
+struct WayOn {
+  Vec3 direction;
+  double density = 0;  ///< of both together [1/sr]
+  double factor = 1;   ///< of its light; 0: nowhere
+  bool by_slit = false;
+};
+
+constexpr double kBySlit = 0.5;
+
+double density_of_ways(const Illumination& light, const Vec3& p, const Vec3& n, const Vec3& d) {
+  const double cosine = dot(n, d) / std::numbers::pi;
+  return light.slits.reaches(p, n) ? (1 - kBySlit) * cosine + kBySlit * light.slits.preference(p, n, d) : cosine;
+}
+
+WayOn way_on(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 2>& square,
+             RandomStream& random) {
+  const bool has_slits = light.slits.reaches(p, n);
+  if (!has_slits || random.uniform() >= kBySlit) {
+    const Vec3 d = cosine_direction(Frame(n), square[0], square[1]);
+    const double density = density_of_ways(light, p, n, d);
+    return {d, density, has_slits ? dot(n, d) / std::numbers::pi / density : 1.0};
+  }
+  const OpeningSampler::Sample s = light.slits.sample(p, n, random.uniform(), square[0], square[1]);
+  const double cosine = dot(n, s.direction) / std::numbers::pi;
+  if (!(s.per_choice > 0) || !(cosine > 0)) return {s.direction, 0, 0, true};
+  const double density =
+      (1 - kBySlit) * cosine + kBySlit * (s.preference + light.slits.preference(p, n, s.direction, s.opening));
+  return {s.direction, density, cosine * s.per_choice * s.preference / density, true};
+}
+
 /// One shadow ray to a light chosen by u. Of light that bundle rays meet too, the share that is due to shadow rays.
 Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
                    unsigned long long& rays) {
   const LightSample s = light.sampler.sample(p, n, u[0], u[1], u[2], false);
   if (s.irradiance.is_black()) return Spectrum(0.0);
   const double weight =
-      s.density > 0 ? balance_heuristic(s.density, dot(n, normalized(s.end - p)) / std::numbers::pi) : 1.0;
+      s.density > 0 ? balance_heuristic(s.density, density_of_ways(light, p, n, normalized(s.end - p))) : 1.0;
   ++rays;
   const RayScene& scene = light.problem.rays;
   const bool by_mirror = s.mirror != kNoMirror;
@@ -61,7 +93,8 @@ Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n
   const RayScene& scene = light.problem.rays;
   const Spectrum passes = scene.transmittance(p, p + s.direction * (4 * scene.diameter()));
   if (passes.is_black()) return passes;
-  const double all = s.preference + light.openings.preference(p, n, s.direction, s.opening) + cos_p / std::numbers::pi;
+  const double all = s.preference + light.openings.preference(p, n, s.direction, s.opening) +
+                     density_of_ways(light, p, n, s.direction);
   return light.sky(s.direction) * passes * (cos_p * s.per_choice * s.preference / all);
 }
 
@@ -77,29 +110,34 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   const Problem& problem = light.problem;
   const PatchSet& patches = problem.patches;
   Spectrum E(0.0), throughput(1.0);
+  double through_slits = 1;  // what they leave; no reason to end a path that was sent there
   auto [square, choice, opening] = start;
   constexpr unsigned kBouncesBetween = 1 << 12;  // some milliseconds
   for (unsigned bounce = 1;; ++bounce) {
     if (bounce % kBouncesBetween == 0 && monitor.should_stop()) return E;
     if (!light.sampler.empty()) E += throughput * one_light(light, p, n, choice, rays);
     if (!light.openings.empty()) E += throughput * through_opening(light, p, n, opening, rays);
-    const double survival = std::min(1.0, throughput.max() / kSafe);
+    const double survival = std::min(1.0, throughput.max() / (kSafe * through_slits));
     if (!(random.uniform() < survival)) return E;
     throughput *= 1 / survival;
 
-    const Vec3 d = cosine_direction(Frame(n), square[0], square[1]);
+    const WayOn way = way_on(light, p, n, square, random);
+    if (!(way.factor > 0)) return E;
+    throughput *= way.factor;
+    if (way.by_slit) through_slits *= std::min(1.0, way.factor);
+    const Vec3 d = way.direction;
     const Hit hit = problem.rays.first_hit(patches, {p, d});
     ++rays;
     throughput *= hit.transmittance;
     if (hit.escaped()) {
       const double other = hit.reflected || light.openings.empty() ? 0 : light.openings.preference(p, n, d);
-      const double weight = balance_heuristic(dot(n, d) / std::numbers::pi, other);
+      const double weight = balance_heuristic(way.density, other);
       return E + throughput * light.sky(hit.direction({p, d})) * (weight * std::numbers::pi);
     }
     if (!hit.patch.valid()) return E;
     const Spectrum M = patches.M[hit.patch];
     if (!M.is_black()) {
-      E += throughput * M * balance_heuristic(dot(n, d) / std::numbers::pi, light.sampler.density(hit, p, n, d, false));
+      E += throughput * M * balance_heuristic(way.density, light.sampler.density(hit, p, n, d, false));
     }
     const auto on = patches.scatter(hit.patch, patches.scatters_through(hit.patch) ? random.uniform() : 0);
     throughput *= on.share;

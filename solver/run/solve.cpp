@@ -138,7 +138,7 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
   const auto closure = [&] {
     constexpr int kLate = 16;
     monitor.report("closure", 0);
-    return measure_closure(problem.patches, problem.rays, monitor.should_stop() ? kLate : e.closure_rays, options.seed);
+    return measure_closure(problem, monitor.should_stop() ? kLate : e.closure_rays, options.seed);
   };
   if (options.method == Method::path || options.method == Method::progressive) {
     const Closure of_patches = closure();

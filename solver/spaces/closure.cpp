@@ -1,16 +1,30 @@
 #include "solver/spaces/closure.h"
 
+#include <algorithm>
 #include <array>
 
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
+#include "solver/openings/openings.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 
-Closure measure_closure(const PatchSet& patches, const RayScene& rays, int rays_per_patch, std::uint64_t seed) {
+namespace {
+
+bool is_passed(const LightArea& opening, const Vec3& p, const Vec3& d, double distance) {
+  const double out = way_out(opening, p, d), in = way_out(opening, p + d * distance, -d);
+  return (out >= 0 && out <= distance) || (in >= 0 && in <= distance);
+}
+
+}  // namespace
+
+Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed) {
+  const PatchSet& patches = problem.patches;
+  const RayScene& rays = problem.rays;
+  const std::vector<LightArea> slits = slits_among(problem.lights.openings);
   const std::size_t n = patches.patch_count();
   Closure closure;
   closure.arrives = closure.escapes = Field(n, patches.channels);
@@ -25,11 +39,15 @@ Closure measure_closure(const PatchSet& patches, const RayScene& rays, int rays_
       Spectrum arrives(0.0), escapes(0.0);
       for (int k = 0; k < rays_per_patch; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(seed, kClosureRays, i));
-        const Vec3 from = rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n);
-        const Hit hit = rays.first_hit(patches, {from, cosine_direction(frame, u[0], u[1])});
+        const Ray ray{rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
+                      cosine_direction(frame, u[0], u[1])};
+        const Hit hit = rays.first_hit(patches, ray);
         if (hit.escaped()) escapes += hit.transmittance;
         if (hit.patch.valid()) arrives += hit.transmittance;
-        if (k < kNeighbours) neighbours[i][static_cast<std::size_t>(k)] = hit.patch;
+        if (k >= kNeighbours || !hit.patch.valid()) continue;
+        if (std::ranges::none_of(
+                slits, [&](const LightArea& slit) { return is_passed(slit, ray.origin, ray.direction, hit.first); }))
+          neighbours[i][static_cast<std::size_t>(k)] = hit.patch;
       }
       closure.arrives.set(i, arrives / rays_per_patch);
       closure.escapes.set(i, escapes / rays_per_patch);

@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/model/patch_set.h"
-#include "solver/visibility/ray_scene.h"
+#include "solver/illumination/problem.h"
 
 namespace clerestory {
 
@@ -19,7 +18,8 @@ struct Closure {
   unsigned long long rays = 0;
 };
 
-/// By rays_per_patch (at least 8) stratified cosine rays; exactly 1 and 0 in a closed room without glass.
-Closure measure_closure(const PatchSet& patches, const RayScene& rays, int rays_per_patch, std::uint64_t seed);
+/// By rays_per_patch (at least 8) stratified cosine rays; exactly 1 and 0 in a closed room without glass. What sees
+/// each other through slits only is not one space: light that is even outdoors is not so in a dark room behind a slit.
+Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed);
 
 }  // namespace clerestory

@@ -66,7 +66,7 @@ int run() {
     set_thread_count(threads);
     const double start = seconds();
     const DirectLight dark = direct_light(light, {});
-    Solution s = shoot(problem, dark, measure_closure(problem.patches, problem.rays, 64, 1), {.stop_fraction = 1e-2});
+    Solution s = shoot(problem, dark, measure_closure(problem, 64, 1), {.stop_fraction = 1e-2});
     time = seconds() - start;
     return s;
   };
@@ -85,7 +85,7 @@ int run() {
   none_direct.E = Field(patches.patch_count(), 1);
   const double start = seconds();
   const Solution reference =
-      path_trace(light, none_direct, measure_closure(problem.patches, problem.rays, 64, 1), {.paths = 1024, .seed = 7});
+      path_trace(light, none_direct, measure_closure(problem, 64, 1), {.paths = 1024, .seed = 7});
   const double path_time = seconds() - start;
   double difference = 0, noise = 0, mean = 0, area = 0;
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {

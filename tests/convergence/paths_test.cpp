@@ -25,7 +25,7 @@ TEST(Paths, ErrLessByTheRootOfTheirNumber) {
   const Problem problem{patches, rays, none};
   const Illumination light(problem);
   const DirectLight dark{Field(patches.patch_count(), 1), {}, {}, {}, 0};
-  const Closure closure = measure_closure(patches, rays, 16, 1);
+  const Closure closure = measure_closure(problem, 16, 1);
   const double exact = 100 / ((1 - kRho) * patches.total_area());
   constexpr int kSeeds = 64;
   test::Errors errors;

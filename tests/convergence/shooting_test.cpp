@@ -23,7 +23,7 @@ TEST(Shooting, ErrsLessByTheRaysAtLeastByTheRoot) {
   const Lights none;
   const Problem problem{patches, rays, none};
   const DirectLight dark = direct_light(Illumination(problem), {});
-  const Closure closure = measure_closure(patches, rays, 64, 1);
+  const Closure closure = measure_closure(problem, 64, 1);
   const Solution exact = gauss_seidel(patches, form_factor_matrix(patches, rays), Field(patches.patch_count(), 1));
   test::Errors errors;
   for (const double count : {64, 128, 256, 512, 1024})

@@ -140,7 +140,7 @@ Solution paths(const Room& room, const PatchSet& leaves, int count) {
   const Problem problem{leaves, room.rays, room.lights};
   DirectLight none;
   none.E = Field(leaves.patch_count(), leaves.channels);
-  const Closure closure = measure_closure(problem.patches, problem.rays, 16, 1);
+  const Closure closure = measure_closure(problem, 16, 1);
   std::vector<Field> parts;
   for (std::uint64_t part = 0; part < kParts; ++part)
     parts.push_back(path_trace(Illumination(problem), none, closure, {.paths = count / kParts, .seed = 99 + part}).E);

@@ -62,7 +62,7 @@ struct Prepared {
 
 Solution shoot_room(const Prepared& room, const ShootOptions& options) {
   const DirectLight dark = direct_light(Illumination(room.problem), {});
-  return shoot(room.problem, dark, measure_closure(room.patches, room.rays, 64, 1), options);
+  return shoot(room.problem, dark, measure_closure(room.problem, 64, 1), options);
 }
 
 TEST(Shoot, AmbientMakesTheMeanExactAfterEveryRoundInAClosedRoomOfOneReflectance) {
@@ -170,8 +170,7 @@ TEST(Shoot, StoppedWithinARoundKeepsTheLightItDidNotShoot) {
   monitor.interrupted = [&] { return interrupted.load(); };
   monitor.progress = [&](std::string_view, double) { interrupted = true; };
   const DirectLight dark = direct_light(Illumination(room.problem), {});
-  const Solution s =
-      shoot(room.problem, dark, measure_closure(room.patches, room.rays, 64, 1), {.rays_per_patch = 4096}, monitor);
+  const Solution s = shoot(room.problem, dark, measure_closure(room.problem, 64, 1), {.rays_per_patch = 4096}, monitor);
   EXPECT_EQ(s.stop, StopReason::interrupted);
   EXPECT_LT(s.rays, 2'300'000ull);
   EXPECT_NEAR(s.energy.imbalance(), 0, 1e-9);
@@ -194,8 +193,7 @@ TEST(Path, AgreesWithTheExactMeanWithinItsStandardError) {
   for (const double rho : {0.0, 0.5, 0.9}) {
     const Prepared room(cube(rho));
     const Illumination light(room.problem);
-    const Solution s =
-        path_trace(light, direct_light(light, {}), measure_closure(room.patches, room.rays, 64, 1), {.paths = 256});
+    const Solution s = path_trace(light, direct_light(light, {}), measure_closure(room.problem, 64, 1), {.paths = 256});
     double variance = 0;
     for (std::size_t i = 0; i < room.patches.patch_count(); ++i)
       variance += std::pow(room.patches.area[i] * s.std_error[i][0] / room.patches.total_area(), 2);

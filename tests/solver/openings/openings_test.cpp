@@ -169,6 +169,35 @@ TEST(GatherPoint, SeesASlitOfOneMillimetreFromDeepInARoomExactly) {
   EXPECT_NEAR(paths.E[0], exact, 4 * paths.std_error[0] + 1e-3 * exact);
 }
 
+TEST(TracePaths, FindTheLightOfABrightRoomThroughASlit) {
+  // A room that glows all over, and a dark one behind a wall that ends 1 mm below the common ceiling; nothing reflects.
+  SceneMaker m;
+  const MaterialId bright = m.material("bright", 0), black = m.material("black", 0);
+  m.edit(bright).exitance = Spectrum(2.0);
+  for (const MaterialId material : {bright, black}) {
+    m.edit(material).sides = 1;
+    const bool is_left = material == bright;
+    const double a = is_left ? -4 : 0, b = is_left ? 0 : 4, top = 2.999, from = is_left ? top : 3,
+                 to = is_left ? 3 : top;
+    m.polygon({{a, 0, 0}, {b, 0, 0}, {b, 4, 0}, {a, 4, 0}}, material);
+    m.polygon({{a, 0, 3}, {a, 4, 3}, {b, 4, 3}, {b, 0, 3}}, material);
+    m.polygon({{a, 0, 0}, {a, 0, 3}, {b, 0, 3}, {b, 0, 0}}, material);
+    m.polygon({{a, 4, 0}, {b, 4, 0}, {b, 4, 3}, {a, 4, 3}}, material);
+    m.polygon({{a, 0, 0}, {a, 4, 0}, {a, 4, to}, {a, 0, to}}, material);
+    m.polygon({{b, 0, 0}, {b, 0, from}, {b, 4, from}, {b, 4, 0}}, material);
+  }
+  const Found found(m, false);
+  const Problem problem{found.patches, found.rays, found.lights};
+  EXPECT_TRUE(found.lights.sky_openings().empty());
+  const Vec3 p = Vec3{3, 2, 1} - problem.patches.origin, n{-1, 0, 0};
+  const double exact = 2 * form_factor(found.only(), p, n);  // [W/m2]
+  unsigned long long rays = 0;
+  const PathEstimate paths = trace_paths_at_point(Illumination(problem), p, n, 5, 4096, rays);
+  EXPECT_NEAR(paths.E[0], exact, 4 * paths.std_error[0]);
+  EXPECT_LT(paths.std_error[0],
+            0.05 * exact);  // one ray in 3,000 meets the slit by chance: 90 % without looking for it
+}
+
 TEST(GatherPoint, APlanFromIndoorsServesAPointOutdoors) {
   // As along a floor that runs out through a door: halves of an element take the plan of a corner.
   SceneMaker m;

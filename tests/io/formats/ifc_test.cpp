@@ -259,6 +259,12 @@ TEST_F(ReadIfc, SpacesAreNamedVolumesThatGridsFill) {
       "sensors": [{ "space": "Hall*", "spacing": 1 }] })"))
                 .find("matches no space; the models have 'R1', 'R2'"),
             std::string::npos);
+  for (const char* kind : {R"("horizontal")", R"("camera", "camera": [9, 9, 9])"})
+    EXPECT_NE(refusal(folder_.write("s.json", R"({ "geometry": [{ "file": "a.ifc" }], "sensors": [{ "space": "R1",
+        "spacing": 1, "normal": [0, 1, 0], "kind": )" +
+                                                  std::string(kind) + " }] }"))
+                  .find("s.json: sensors[0].normal does not go with \"kind\""),
+              std::string::npos);
 }
 
 /// A lamp of 1000 lm at (2, 2, 2.8) in a housing, with intensities 0..90 degrees from the nadir.

@@ -143,7 +143,8 @@ class GltfReader {
   Model read() {
     model_.metres_per_unit = 1.0;
     model_.up = Up::y;
-    model_.files = file_.files();
+    for (const std::string& name : file_.file_names())
+      model_.files.push_back(finder_.file(folder_, name).value_or(folder_ / name));
     check_extensions();
     for (std::size_t m = 0; m < file_.list("materials").size(); ++m) {
       model_.materials.push_back(
@@ -212,7 +213,9 @@ class GltfReader {
     if (texture.name.empty()) texture.name = where;
     try {
       if (!is_inside) {
-        texture.file = find_file(folder_, uri).value_or(find_file(folder_, percent_decoded(uri)).value_or(""));
+        auto found = finder_.file(folder_, uri);
+        if (!found) found = finder_.file(folder_, percent_decoded(uri));
+        if (found) texture.file = *found, model_.files.push_back(*found);
       } else if (!uri.empty()) {
         texture.bytes = file_.uri_bytes(image["uri"].get_ref<const std::string&>(), where);
       } else if (image.contains("bufferView")) {
@@ -448,6 +451,7 @@ class GltfReader {
   std::map<std::size_t, std::shared_ptr<const PhotometricWeb>> profiles_;                        // by light
   std::map<const char*, std::pair<std::size_t, std::shared_ptr<const PhotometricWeb>>> parsed_;  // by where they are
   std::map<std::size_t, std::size_t> texture_by_image_;
+  FileFinder finder_;
   std::string stem_;
   Model model_;
   UniqueNames names_;

@@ -60,7 +60,7 @@ class IesReader {
     if (kind == "none") return;
     if (kind == "include") return read_tilt_table(words_);
     if (tilt.empty()) words_.refuse("TILT= says nothing; NONE, INCLUDE or the name of a file is known");
-    const auto file = find_file(folder_, tilt);
+    const auto file = FileFinder().file(folder_, tilt);
     if (named_) named_->push_back(file.value_or(folder_ / tilt));
     if (!file) {
       words_.refuse(text("TILT names the file '", quotable(tilt),
@@ -140,18 +140,11 @@ class IesReader {
       if (first == 0) web_.symmetry = WebSymmetry::about_0_180;
       return;
     }
-    if (web_.horizontal.size() == 1) {
-      web_.symmetry = WebSymmetry::rotational;
-    } else if (first == 0 && last == 90) {
-      web_.symmetry = WebSymmetry::quadrants;
-    } else if (first == 0 && last == 180) {
-      web_.symmetry = WebSymmetry::about_0_180;
-    } else if (first == 90 && last == 270) {
-      web_.symmetry = WebSymmetry::about_90_270;
-    } else if (first != 0 || last <= 180) {
+    const auto symmetry = symmetry_of(web_.horizontal);
+    if (!symmetry)
       words_.refuse(text("horizontal angles go from ", first, " to ", last,
                          "; type C takes 0 alone, 0 to 90, 0 to 180, 90 to 270 or 0 to 360"));
-    }
+    web_.symmetry = *symmetry;
   }
 
   void read_ascending(std::vector<double>& angles, std::size_t n, const char* name, double low, double high) {

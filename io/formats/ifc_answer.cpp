@@ -161,8 +161,8 @@ void read_end(const Json& json, const std::filesystem::path& file, Model& model)
   }
   for (const Json& space : json.at("spaces"))
     model.spaces.push_back({spaces.take(word(space, "name")), word(space, "long_name"), {}, {}});
-  for (const Json& fixture : json.at("fixtures"))
-    model.fixtures.push_back(read_ifc_fixture(fixture, model.surfaces.size(), file, model.warnings));
+  IfcLights lights(file, model);
+  for (const Json& fixture : json.at("fixtures")) model.fixtures.push_back(lights.fixture(fixture));
   if (const Json* north = member(json, "north")) model.north_deg = north->get<double>();
   for (const NotRead& note : read_notes(json, "warnings")) model.warnings.push_back(line_of(note));
   for (const NotRead& note : read_notes(json, "complaints"))

@@ -75,11 +75,6 @@ Model read_stl(const std::filesystem::path& file);
 Model read_off(const std::filesystem::path& file);
 Model read_ifc(const std::filesystem::path& file);
 
-/// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`, what they show to
-/// `textures`, files that it names to `named`.
-std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<ModelTexture>& textures,
-                                    std::vector<std::string>& warnings, std::vector<std::filesystem::path>& named);
-
 /// Takes a transparent material (opacity below 1/2) as glass that passes what it does not cover.
 void apply_opacity(Material& material, double opacity);
 

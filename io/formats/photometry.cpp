@@ -106,6 +106,25 @@ void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vecto
   }
 }
 
+std::optional<WebSymmetry> symmetry_of(const std::vector<double>& horizontal) {
+  if (horizontal.size() == 1) return WebSymmetry::rotational;
+  const double first = horizontal.front(), last = horizontal.back();
+  if (first == 90 && last == 270) return WebSymmetry::about_90_270;
+  if (first != 0) return std::nullopt;
+  if (last == 90) return WebSymmetry::quadrants;
+  if (last == 180) return WebSymmetry::about_0_180;
+  return last > 180 ? std::optional(WebSymmetry::none) : std::nullopt;
+}
+
+std::shared_ptr<const PhotometricWeb> PhotometryFiles::read(const std::filesystem::path& file,
+                                                            std::vector<std::string>& warnings,
+                                                            std::vector<std::filesystem::path>& named) {
+  auto& web = read_before_[file.lexically_normal()];
+  if (web) return web;
+  named.push_back(file);
+  return web = std::make_shared<const PhotometricWeb>(read_photometry(file, warnings, &named));
+}
+
 PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings,
                                std::vector<std::filesystem::path>* named) {
   const std::string extension = to_lower(file.extension().string());

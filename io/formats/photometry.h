@@ -2,6 +2,9 @@
 // Photometric files of luminaires, by extension: IESNA LM-63 (.ies) and EULUMDAT (.ldt).
 
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,21 @@ namespace clerestory {
 /// throws    InputError with file, line and reason, also when the extension is unknown.
 PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings,
                                std::vector<std::filesystem::path>* named = nullptr);
+
+/// Photometric files, each read once however many entries or fixtures name it.
+class PhotometryFiles {
+ public:
+  /// As read_photometry; `named` gets the file as well.
+  std::shared_ptr<const PhotometricWeb> read(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                             std::vector<std::filesystem::path>& named);
+
+ private:
+  std::map<std::filesystem::path, std::shared_ptr<const PhotometricWeb>> read_before_;
+};
+
+/// Which part of the circle planes C stand for, by the ascending angles that they are at [degrees]: one plane, 0 to 90,
+/// 0 to 180, 90 to 270, or from 0 to beyond 180, where 360 may be left out; nothing for others. Source: IESNA LM-63.
+std::optional<WebSymmetry> symmetry_of(const std::vector<double>& horizontal);
 
 /// What all formats share: mirrors the planes of web.symmetry all round, so that `horizontal` of type C goes from 0 to
 /// 360 degrees, and warns about angles and fluxes that are odd.

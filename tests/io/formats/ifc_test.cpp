@@ -6,6 +6,7 @@
 #include <functional>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "solver/lights/luminaire.h"
 #include "solver/model/units.h"
@@ -372,6 +373,25 @@ TEST_F(ReadIfc, AByteOrderMarkIsSkippedAndUtf16IsNamed) {
   for (const char c : text) wide += std::string{c, '\0'};
   EXPECT_EQ(refusal(folder_.write("wide.ifc", wide)),
             "wide.ifc: is UTF-16 text; IFC files are plain text (ISO 10303-21). Save it as UTF-8");
+}
+
+TEST_F(ReadIfc, TooLittleAddressSpaceForNodeIsNoFaultOfTheFile) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers take more address space than any limit";
+#endif
+  IfcText ifc;
+  ifc.room();
+  const std::string file = folder_.write("a.ifc", ifc.str());
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  rlimit tight = before;
+  tight.rlim_cur = rlim_t{4} << 30;
+  setrlimit(RLIMIT_AS, &tight);
+  const std::string said = refusal(file);
+  setrlimit(RLIMIT_AS, &before);
+  EXPECT_EQ(said,
+            "a.ifc: cannot be read: the .ifc importer, Node.js, takes some 16384 MiB of address space, and 4096 MiB "
+            "are allowed (ulimit -v); allow more");
 }
 
 TEST_F(ReadIfc, NamesAreDecodedAndUnique) {

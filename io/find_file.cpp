@@ -22,12 +22,6 @@ std::string with_slashes(std::string_view named) {
 
 }  // namespace
 
-std::string_view unquoted(std::string_view s) {
-  s = trimmed(s);
-  const bool is_quoted = s.size() >= 2 && s.front() == s.back() && (s.front() == '"' || s.front() == '\'');
-  return is_quoted ? trimmed(s.substr(1, s.size() - 2)) : s;
-}
-
 const FileFinder::Listing& FileFinder::listing(const fs::path& folder) {
   const auto [at, is_new] = listings_.try_emplace(folder.lexically_normal());
   if (!is_new) return at->second;

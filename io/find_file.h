@@ -10,9 +10,6 @@
 
 namespace clerestory {
 
-/// s without quotation marks around it, of either kind.
-std::string_view unquoted(std::string_view s);
-
 /// Looks for what one model names. A folder is listed once, however many of the names are of no file there; what comes
 /// into it meanwhile may not be found.
 class FileFinder {

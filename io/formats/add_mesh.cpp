@@ -1,12 +1,21 @@
 #include "io/formats/add_mesh.h"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 
 #include "io/text.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
+
+double as_written(float x) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof(digits), x);  // as few digits as tell it from others
+  double value = double{x};
+  if (error == std::errc{}) std::from_chars(digits, end, value);
+  return value;
+}
 
 void add_mesh(Model& model, const LocalMesh& mesh, const Affine& place, SurfaceId surface, const std::string& name) {
   constexpr std::uint32_t kUnused = 0xffffffff;

@@ -1,7 +1,6 @@
 #include "io/formats/assimp_model.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -25,15 +24,6 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = 4ull << 30;
 
 std::string str(const aiString& s) { return {s.data, std::min<std::size_t>(s.length, sizeof(s.data) - 1)}; }
-
-/// The number that its writer meant: 0.001f as 0.001, and not as 0.00100000005.
-double as_written(float x) {
-  char digits[32];
-  const auto [end, error] = std::to_chars(digits, digits + sizeof(digits), x);  // as few digits as tell it from others
-  double value = double{x};
-  if (error == std::errc{}) std::from_chars(digits, end, value);
-  return value;
-}
 
 Affine to_affine(const aiMatrix4x4& m) {
   Affine a;

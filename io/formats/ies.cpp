@@ -29,7 +29,7 @@ class IesReader {
     read_tilt(find_tilt());
     read_luminaire();
     read_angles();
-    read_candelas();
+    read_candelas(words_, scale_, {"candela at V = ", ", H = "}, web_, warnings_);
     words_.end(warnings_, [&](std::size_t more) {
       words_.refuse(text(more, more == 1 ? " more number than " : " more numbers than ", vertical_count_, " x ",
                          horizontal_count_, " candelas; the counts of angles do not fit the data"));
@@ -156,21 +156,6 @@ class IesReader {
         words_.refuse(text(name, " angles are not ascending: ", a, " follows ", angles.back()));
       angles.push_back(a);
     }
-  }
-
-  void read_candelas() {
-    std::vector<std::size_t> line;
-    const auto what = [&](std::size_t i) {
-      return text("candela at V = ", web_.vertical[i % vertical_count_],
-                  ", H = ", web_.horizontal[i / vertical_count_]);
-    };
-    for (std::size_t i = 0; i < vertical_count_ * horizontal_count_; ++i) {
-      web_.candela.push_back(static_cast<float>(words_.number([&] { return what(i); }) * scale_));
-      line.push_back(words_.line_number());
-    }
-    if (const std::size_t i = settle_negative(web_, warnings_); i < web_.candela.size())
-      throw InputError(text(web_.name, ":", line[i], ": ", what(i), " = ",
-                            std::round(web_.candela[i] / scale_ * 1e6) / 1e6, " is negative"));
   }
 
   /// Planes that stop short of 360 degrees, 0 to 345: the first one closes the circle.

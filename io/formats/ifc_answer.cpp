@@ -1,6 +1,5 @@
 #include "io/formats/ifc_answer.h"
 
-#include <charconv>
 #include <cstring>
 
 #include <nlohmann/json.hpp>
@@ -61,22 +60,14 @@ class Reader {
   std::string_view rest_;
 };
 
-/// The number that its writer meant: 0.001f as 0.001, and not as 0.00100000005. web-ifc computes in double and hands
-/// out floats around the middle of each shape; of round sizes nothing is lost by that.
-double as_written(float x) {
-  char digits[32];
-  const auto [end, error] = std::to_chars(digits, digits + sizeof(digits), x);  // as few digits as tell it from others
-  double value = double{x};
-  if (error == std::errc{}) std::from_chars(digits, end, value);
-  return value;
-}
-
 struct PlacedMesh {
   std::uint32_t owner = 0, material = 0;
   Affine place;
   LocalMesh mesh;
 };
 
+/// web-ifc computes in double and hands out floats around the middle of each shape; of round sizes nothing is lost by
+/// that.
 PlacedMesh read_mesh(std::string_view bytes) {
   Reader reader(bytes);
   PlacedMesh read;

@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "solver/model/photometric_web.h"
@@ -39,9 +41,14 @@ std::optional<WebSymmetry> symmetry_of(const std::vector<double>& horizontal);
 /// declared  flux that the intensities should add up to [lm], 0 when the file does not say; at_most: or less.
 void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vector<std::string>& warnings);
 
-/// Negative candelas: of up to a twentieth of the peak they are a meter's offset and become 0, with a warning.
+class NumberWords;
+
+/// Reads the intensities at all angles of `web`, plane by plane, times `scale` [cd]. Negative ones of up to a twentieth
+/// of the peak are a meter's offset and become 0, with a warning.
 ///
-/// returns  the place of the first one that is more than that; candela.size() where there is none.
-std::size_t settle_negative(PhotometricWeb& web, std::vector<std::string>& warnings);
+/// at      what messages put before the vertical and the horizontal angle.
+/// throws  InputError naming the line.
+void read_candelas(NumberWords& words, double scale, const std::pair<std::string_view, std::string_view>& at,
+                   PhotometricWeb& web, std::vector<std::string>& warnings);
 
 }  // namespace clerestory

@@ -90,7 +90,8 @@ SensorPoint point_of(const Cells& cells, const Order& order, const std::string& 
     const std::optional<double> number = to_decimal(cell);
     if (!number) throw InputError(text(where, kColumns[k], " = '", quotable(cell), "' is not a number"));
     if (!(std::abs(*number) <= 1e12))
-      throw InputError(text(where, kColumns[k], " = ", quotable(cell), " is outside [-1e12, 1e12]"));
+      throw InputError(text(where, kColumns[k], " = ", quotable(cell), " is outside [-1e12, 1e12]; ",
+                            k < 3 ? "positions are in metres" : "give a normal of length 1"));
     value[k] = *number;
   }
   const Vec3 n{value[3], value[4], value[5]};

@@ -40,7 +40,7 @@ void add_mesh(Model& model, const LocalMesh& mesh, const Affine& place, SurfaceI
         if (!is_finite(p) || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate) {
           throw InputError(text(name, ": vertex ", mesh.number.empty() ? v : mesh.number[v], " (from 0) of '",
                                 quotable(model.surfaces[surface]), "' is at (", p.x, ", ", p.y, ", ", p.z,
-                                "), outside [-1e12, 1e12]"));
+                                "), outside [-1e12, 1e12]; is the file damaged, or drawn far from its origin?"));
         }
         place_of[v] = static_cast<std::uint32_t>(soup.vertices.size());
         soup.add_vertex(p);

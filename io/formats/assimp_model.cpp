@@ -200,7 +200,8 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
       LocalMesh local = to_mesh(mesh);
       if (local.material >= no_material) local.material = no_material;
       faces += mesh.mNumFaces;
-      if (faces > kMaxFaces) throw InputError(text(name, ": more than ", kMaxFaces, " faces"));
+      if (faces > kMaxFaces)
+        throw InputError(text(name, ": more than ", kMaxFaces, " faces; leave out what light does not need"));
       add_mesh(model, local, place, owner.surface, name);
     }
   }
@@ -208,7 +209,7 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
     model.warnings.push_back(text(scene.mNumLights, " lights are left out: this format gives them no unit. ",
                                   "Use glTF, or \"luminaires\" of a scene file"));
   }
-  if (model.polygons.face_count() == 0) throw InputError(text(name, ": has no faces; nothing to light"));
+  if (model.polygons.face_count() == 0) throw InputError(text(name, ": ", kNoFaces));
   return model;
 }
 

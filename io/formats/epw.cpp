@@ -115,7 +115,8 @@ std::size_t promised_hours(const Line& line, std::vector<std::string>& warnings)
     for (year y = year_month_day(*first).year(); y <= year_month_day(*last).year(); ++y)
       if (const sys_days leap_day = y / February / 29; y.is_leap() && *first <= leap_day && leap_day <= *last) --total;
   }
-  if (total > 100'000) throw InputError(text(line.where, "periods of ", total, " days"));
+  if (total > 100'000)
+    throw InputError(text(line.where, "periods of ", total, " days; it is damaged, download it again"));
   return total > 0 ? static_cast<std::size_t>(total) * 24 : 0;
 }
 
@@ -167,7 +168,7 @@ void settle_hour_0(Weather& weather) {
 void read_location(const Line& line, Weather& weather) {
   if (to_lower(line.cells[0]) != "location")
     throw InputError(text(line.where, "begins with '", quotable(line.cells[0]),
-                          "' and not with LOCATION; it is no EPW weather file"));
+                          "' and not with LOCATION; it is no EPW weather file. Name one"));
   std::size_t n = line.cells.size();
   while (n > 0 && line.cells[n - 1].empty()) --n;
   // A comma in the name of the city, without quotation marks, moves what follows.
@@ -216,7 +217,7 @@ Weather read_epw(const std::filesystem::path& file) {
     } else if (number == kHeaderLines) {
       if (to_lower(line.cells[0]) != "data periods")
         throw InputError(text(line.where, "begins with '", quotable(line.cells[0]), "' and not with DATA PERIODS; the ",
-                              "header has 8 lines"));
+                              "header has 8 lines. Download it again"));
       promised = promised_hours(line, weather.warnings);
     } else if (number > kHeaderLines) {
       weather.hours.push_back(hour_of(line));
@@ -231,7 +232,7 @@ Weather read_epw(const std::filesystem::path& file) {
   if (weather.hours.size() < promised)
     throw InputError(text(weather.file, ": has ", weather.hours.size(), " hours; its DATA PERIODS say ", promised,
                           ". The file is cut short"));
-  if (weather.hours.empty()) throw InputError(text(weather.file, ": has no hours"));
+  if (weather.hours.empty()) throw InputError(text(weather.file, ": has no hours; download it again"));
   settle_hour_0(weather);
   return weather;
 }

@@ -158,7 +158,7 @@ class GltfReader {
     read_nodes();
     if (left_out_ > 0) model_.warnings.push_back(text(left_out_, " primitives of points or lines are left out"));
     if (skinned_) model_.warnings.push_back("skinned meshes are taken as they are stored, without their skeleton");
-    if (model_.polygons.face_count() == 0) file_.refuse("has no faces; nothing to light");
+    if (model_.polygons.face_count() == 0) file_.refuse(std::string(kNoFaces));
     return std::move(model_);
   }
 
@@ -297,7 +297,7 @@ class GltfReader {
     for (const LocalMesh& part : primitives(mesh, index, mesh_place)) {
       // Vertices cost as well, even where few of them carry faces.
       faces_ += std::max(part.face_begin.size() - 1, part.vertices.size() / 8);
-      if (faces_ > kMaxFaces) file_.refuse(text("more than ", kMaxFaces, " faces"));
+      if (faces_ > kMaxFaces) file_.refuse(text("more than ", kMaxFaces, " faces; leave out what light does not need"));
       file_.spend(part.vertices.size() + part.corner.size(), where);
       add_mesh(model_, part, place, surface, file_.name());
     }

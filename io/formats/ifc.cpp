@@ -42,7 +42,7 @@ void refuse_what_is_no_step_file(const std::filesystem::path& file) {
     throw InputError(text(name, ": is XML (ifcXML); export it as a STEP file (.ifc)"));
   if (head.find("ISO-10303-21") == head.npos)
     throw InputError(text(name, ": cannot be read: it does not begin with ISO-10303-21; as IFC files do; ",
-                          "the file is damaged or not what its name says"));
+                          "the file is damaged or not what its name says. Export it again"));
   if (tail.find("END-ISO-10303-21") == tail.npos)
     throw InputError(
         text(name, ": is cut off: its last line END-ISO-10303-21; is missing; copy or export it ", "again"));

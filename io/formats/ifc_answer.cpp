@@ -210,13 +210,13 @@ Model model_of_ifc_answer(std::string_view answer, const std::filesystem::path& 
     if (read.owner >= model.surfaces.size() || read.material >= model.materials.size())
       throw std::runtime_error("a mesh belongs to no surface or material");
     faces += read.mesh.corner.size() / 3;
-    if (faces > kMaxFaces) throw InputError(text(name, ": more than ", kMaxFaces, " faces"));
+    if (faces > kMaxFaces)
+      throw InputError(text(name, ": more than ", kMaxFaces, " faces; leave out what light does not need"));
     read.mesh.material = MaterialId(read.material);
     add_mesh(model, read.mesh, read.place, SurfaceId(read.owner), name);
   }
   if (model.polygons.face_count() == 0)
-    throw InputError(text(name, ": has no faces; nothing to light",
-                          model.warnings.empty() ? "" : text("; ", model.warnings.front())));
+    throw InputError(text(name, ": ", kNoFaces, model.warnings.empty() ? "" : text("; ", model.warnings.front())));
   return model;
 }
 

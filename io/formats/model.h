@@ -57,6 +57,9 @@ struct Model {
   std::optional<Up> up;                      ///< when the file says its axes
 };
 
+/// What is said of a model without a face.
+inline constexpr std::string_view kNoFaces =
+    "has no faces; nothing to light. Export its surfaces as polygons or triangles";
 inline constexpr std::string_view kDefaultMaterial = "default";  ///< name where the model has none
 inline constexpr std::size_t kMaxFaces = 30'000'000;  ///< of one scene; more is a mistake, or a file made to do harm
 inline constexpr double kLargestCoordinate = 1e12;    ///< farther than this a coordinate is a mistake

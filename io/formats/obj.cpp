@@ -58,7 +58,9 @@ class ObjReader {
       read_statement(line);
     }
     if (model_.polygons.face_count() == 0) {
-      throw InputError(text(name_, ": has no faces (no 'f' statement with three corners or more); nothing to light"));
+      throw InputError(text(name_,
+                            ": has no faces (no 'f' statement with three corners or more); nothing to light. Export "
+                            "its surfaces as polygons"));
     }
     finish();
     return std::move(model_);

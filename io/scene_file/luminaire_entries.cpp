@@ -67,7 +67,7 @@ class LuminaireReader {
   static Spectrum scale_to(const Spectrum& power, const JsonObject& object, const PhotometricWeb& web) {
     if (web.flux > 0) return power / web.flux;
     throw InputError(text(object.place("file"), " '", web.name, "' gives no light; its flux cannot be scaled to ",
-                          "the one the scene asks for"));
+                          "the one the scene asks for; leave that out, or name another file"));
   }
 
   /// In watts, or nothing; before dimming.

@@ -88,7 +88,8 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
       model->second.not_read.clear();
     }
     if (scene.polygons.face_count() + model->second.polygons.face_count() > kMaxFaces) {
-      throw InputError(text(object.where(), ": more than ", kMaxFaces, " faces in one scene"));
+      throw InputError(
+          text(object.where(), ": more than ", kMaxFaces, " faces in one scene; leave out what light does not need"));
     }
     place_model(
         scene, placed, model->second, model_file, placement,

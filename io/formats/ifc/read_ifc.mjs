@@ -65,7 +65,7 @@ class Reader {
     const model = api.OpenModel(this.bytes, settings);
     if (model < 0) {
       const schema = /FILE_SCHEMA\s*\(\s*\(\s*'([^']*)'/i.exec(Buffer.from(this.bytes.subarray(0, 65536)).toString('latin1'))?.[1];
-      refuse(schema === undefined ? 'is no IFC file: its header names no schema' : `has the schema '${schema}', which is not read; known are IFC2X3, IFC4 and IFC4X3`);
+      refuse(schema === undefined ? 'is no IFC file: its header names no schema; export it again' : `has the schema '${schema}', which is not read; known are IFC2X3, IFC4 and IFC4X3; export it as one of them`);
     }
     this.file = new IfcFile(this.WebIfc, api, model);
   }
@@ -348,5 +348,5 @@ try {
   await main();
 } catch (error) {
   if (/out of memory|cannot allocate/i.test(String(error?.message ?? error))) throw error;  // not the file's fault
-  refuse(`cannot be read: ${String(error?.message ?? error).split('\n')[0].slice(0, 160)}`);
+  refuse(`cannot be read: ${String(error?.message ?? error).split('\n')[0].slice(0, 160)}; try to export it again, as glTF or OBJ`);
 }

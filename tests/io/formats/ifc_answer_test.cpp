@@ -64,7 +64,8 @@ TEST(IfcAnswer, WhatDoesNotFitTogetherIsFoundOut) {
   EXPECT_EQ(failure("CLIFC001" + record(3, triangle(1)) + end()), "a mesh belongs to no space");
   EXPECT_NE(failure("CLIFC001" + record(2, triangle(0, 3)) + end()).find("uses vertex 3"), std::string::npos);
   EXPECT_EQ(failure("CLIFC001" + record(2, triangle(0) + "x") + end()), "a mesh of the answer is too long");
-  EXPECT_EQ(failure("CLIFC001" + end("")), "a.ifc: has no faces; nothing to light");
+  EXPECT_EQ(failure("CLIFC001" + end("")),
+            "a.ifc: has no faces; nothing to light. Export its surfaces as polygons or triangles");
 }
 
 /// A light source of planes C at these angles, all of 100 cd/lm down to 60 degrees.

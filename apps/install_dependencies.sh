@@ -12,7 +12,7 @@ packages=(
   libopenmesh-dev                         # elements, lightmaps
   libassimp-dev nlohmann-json3-dev        # models and scene files in
   libvtk9-dev                             # results out
-  libopenimageio-dev                      # sky images in
+  libopenimageio-dev                      # sky images and textures in
   libcli11-dev                            # the command line
   "$@"
 )

@@ -30,9 +30,11 @@ void open_standard_files() {
     std::cerr << "error: " << kOutOfMemory << std::endl;
     ::_exit(kInputRefused);
   } catch (const std::exception& e) {
-    std::cerr << "error: internal failure: " << e.what() << std::endl;
-  } catch (...) {
+    std::cerr << "error: internal failure: " << e.what() << kPleaseReport << std::endl;
+    ::_exit(kInternalFailure);
+  } catch (...) {  // the line below says all there is to say
   }
+  std::cerr << "error: internal failure: ended without a reason" << kPleaseReport << std::endl;
   ::_exit(kInternalFailure);
 }
 

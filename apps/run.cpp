@@ -36,11 +36,9 @@ ExitCode run(const CommonArguments& arguments, const std::string& input, std::ve
   } catch (const std::system_error& e) {  // a thread that cannot be made
     if (e.code() == std::errc::resource_unavailable_try_again || e.code() == std::errc::not_enough_memory)
       return out_of_memory();
-    return fail(std::string("internal failure: ") + e.what() + "; this is a mistake of the program, please report it.",
-                kInternalFailure);
+    return fail(std::string("internal failure: ") + e.what() + kPleaseReport, kInternalFailure);
   } catch (const std::exception& e) {
-    return fail(std::string("internal failure: ") + e.what() + "; this is a mistake of the program, please report it.",
-                kInternalFailure);
+    return fail(std::string("internal failure: ") + e.what() + kPleaseReport, kInternalFailure);
   }
 }
 

@@ -28,7 +28,7 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/solver/model/version.h DESTINATION
 install(FILES pipeline/observer.h pipeline/settings.h pipeline/solved.h pipeline/solve_scene.h
   DESTINATION ${include_dir}/pipeline)
 install(FILES meshing/build_patches.h meshing/make_lightmap.h DESTINATION ${include_dir}/meshing)
-install(FILES io/read_scene.h io/read_sensors.h io/write_result.h io/write_sensors.h io/run_report.h
+install(FILES io/atomic_file.h io/read_scene.h io/read_sensors.h io/write_result.h io/write_sensors.h io/run_report.h
   DESTINATION ${include_dir}/io)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Clerestory)

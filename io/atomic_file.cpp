@@ -138,14 +138,18 @@ bool is_at(int descriptor, const fs::path& name) {
          open_file.st_dev == named.st_dev && open_file.st_ino == named.st_ino;
 }
 
-/// What is not allowed is left out: only root may give a file away.
+/// Owner, group and mode of the file that is replaced. Only root may give a file away; a group that one is in can be
+/// kept.
 void keep_mode(int descriptor, const struct stat& old) {
   struct stat made {};
   if (::fstat(descriptor, &made) != 0) return;
-  const bool same_owner = made.st_uid == old.st_uid && made.st_gid == old.st_gid;
-  const bool kept = same_owner || ::fchown(descriptor, old.st_uid, old.st_gid) == 0;
-  // Rights of a group are not for another one.
-  ::fchmod(descriptor, old.st_mode & (kept ? 07777u : 0707u));
+  constexpr auto kSame = static_cast<uid_t>(-1);
+  const bool is_same = made.st_uid == old.st_uid && made.st_gid == old.st_gid;
+  const bool owner_kept = is_same || ::fchown(descriptor, old.st_uid, old.st_gid) == 0;
+  const bool group_kept = owner_kept || made.st_gid == old.st_gid || ::fchown(descriptor, kSame, old.st_gid) == 0;
+  mode_t mode = old.st_mode & (owner_kept ? 07777u : 0777u);
+  if (!group_kept) mode = (mode & 0707u) | (mode & 07u) << 3;  // a group that was among the others stays there
+  ::fchmod(descriptor, mode);
 }
 
 /// 0, or why not all bytes were taken.
@@ -275,10 +279,18 @@ void AtomicFile::replace() {
     return;
   }
 #endif
+  // NFS and others exchange nothing: there the old file gets a second name, where the file system knows such.
   const bool over_old = fs::exists(destination_, error);
-  if (::rename(from, to) != 0) refuse(reason(errno));
-  named_ = over_old ? Named::over_old : Named::alone;
-  temporary_.clear();
+  const fs::path spare = fs::path(temporary_).replace_filename(stem_of_temporaries(destination_) + random_digits());
+  const bool is_kept = over_old && ::link(to, spare.c_str()) == 0;
+  if (::rename(from, to) != 0) {
+    const int why = errno;
+    if (is_kept) ::unlink(spare.c_str());
+    refuse(reason(why));
+  }
+  named_ = is_kept ? Named::linked_old : over_old ? Named::over_old : Named::alone;
+  forget_temporary(std::exchange(slot_, is_kept ? note_temporary(spare) : -1));
+  temporary_ = is_kept ? spare : fs::path();
 }
 
 void AtomicFile::undo() noexcept {
@@ -286,6 +298,7 @@ void AtomicFile::undo() noexcept {
   if (named_ == Named::beside_old)
     ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, destination_.c_str(), RENAME_EXCHANGE);
 #endif
+  if (named_ == Named::linked_old) ::rename(temporary_.c_str(), destination_.c_str());
   if (named_ == Named::alone) ::unlink(destination_.c_str());
 }
 

@@ -10,8 +10,9 @@
 namespace clerestory {
 
 /// A file under construction: written beside its destination under a name nobody can guess, renamed by commit(),
-/// removed when destroyed before that. It takes the mode (and, where it may, the owner) of the file it replaces. Links
-/// are followed, so that the file they point to is replaced and not the link. A destination that is no regular file
+/// removed when destroyed before that. It takes the mode of the file it replaces, and its owner and group where it
+/// may; a group that it cannot have keeps no rights by another's name. Links are followed, so that the file they point
+/// to is replaced and not the link. A destination that is no regular file
 /// (/dev/null, /dev/stdout, a pipe) gets its bytes in place, all of them at commit().
 ///
 /// What killed runs left beside the same destination is removed; what a run that lives is writing stays: it holds a
@@ -54,7 +55,7 @@ class AtomicFile {
   int descriptor_ = -1;  ///< of the temporary; of a file in memory when in place
   int device_ = -1;      ///< of what is written in place
   int slot_ = -1;        ///< where signal handlers find the temporary
-  enum class Named { no, beside_old, alone, over_old } named_ = Named::no;  ///< what replace() did
+  enum class Named { no, beside_old, linked_old, alone, over_old } named_ = Named::no;  ///< what replace() did
 };
 
 /// The files of one run.
@@ -63,7 +64,8 @@ class Outputs {
   /// A file that is part of them. The reference stays valid.
   AtomicFile& open(const std::filesystem::path& destination) { return files_.emplace_back(destination); }
   /// Renames all of them, once all are whole on the disk.
-  /// throws  InputError that names the file and why; all old files are as they were then.
+  /// throws  InputError that names the file and why; all old files are as they were then. Only where a file system
+  ///         knows neither an exchange of names nor hard links (FAT) do those stay replaced that were before it.
   void commit();
 
  private:

@@ -1,7 +1,6 @@
 #include "io/find_file.h"
 
 #include <algorithm>
-#include <string>
 
 #include "io/text.h"
 
@@ -21,20 +20,31 @@ std::string with_slashes(std::string_view named) {
   return path;
 }
 
-/// `part` of a folder, or what differs from it in case only.
-std::optional<fs::path> entry(const fs::path& folder, const fs::path& part) {
+}  // namespace
+
+const FileFinder::Listing& FileFinder::listing(const fs::path& folder) {
+  const auto [at, is_new] = listings_.try_emplace(folder.lexically_normal());
+  if (!is_new) return at->second;
   std::error_code error;
-  if (fs::exists(folder / part, error)) return folder / part;
-  const std::string wanted = to_lower(part.string());
-  std::optional<fs::path> found;
-  for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end; at.increment(error)) {
-    const fs::path name = at->path().filename();
-    if (to_lower(name.string()) == wanted && (!found || folder / name < *found)) found = folder / name;
+  for (fs::directory_iterator next(folder.empty() ? "." : folder, error), end; !error && next != end;
+       next.increment(error)) {
+    const fs::path name = next->path().filename();
+    fs::path& first = at->second[to_lower(name.string())];
+    if (first.empty() || name < first) first = name;
   }
-  return found;
+  return at->second;
 }
 
-std::optional<fs::path> find_any_case(fs::path at, const fs::path& named) {
+/// `part` of a folder, or what differs from it in case only.
+std::optional<fs::path> FileFinder::entry(const fs::path& folder, const fs::path& part) {
+  std::error_code error;
+  if (fs::exists(folder / part, error)) return folder / part;
+  const Listing& names = listing(folder);
+  const auto found = names.find(to_lower(part.string()));
+  return found == names.end() ? std::nullopt : std::optional(folder / found->second);
+}
+
+std::optional<fs::path> FileFinder::any_case(fs::path at, const fs::path& named) {
   if (named.is_absolute()) at = named.root_path();
   for (const fs::path& part : named.relative_path()) {
     const auto next = entry(at, part);
@@ -44,25 +54,17 @@ std::optional<fs::path> find_any_case(fs::path at, const fs::path& named) {
   return is_file(at) ? std::optional(at) : std::nullopt;
 }
 
-}  // namespace
-
-std::string_view unquoted(std::string_view s) {
-  s = trimmed(s);
-  const bool is_quoted = s.size() >= 2 && s.front() == s.back() && (s.front() == '"' || s.front() == '\'');
-  return is_quoted ? trimmed(s.substr(1, s.size() - 2)) : s;
-}
-
-std::optional<fs::path> find_path(const fs::path& folder, std::string_view named) {
+std::optional<fs::path> FileFinder::path(const fs::path& folder, std::string_view named) {
   for (const std::string_view name : {named, unquoted(named)})
     if (is_file(folder / name)) return folder / name;
   const std::string name = with_slashes(unquoted(named));
-  return name.empty() ? std::nullopt : find_any_case(folder, name);
+  return name.empty() ? std::nullopt : any_case(folder, name);
 }
 
-std::optional<fs::path> find_file(const fs::path& folder, std::string_view named) {
-  if (auto found = find_path(folder, named)) return found;
-  const std::string name = fs::path(with_slashes(unquoted(named))).filename().string();
-  return name.empty() ? std::nullopt : find_path(folder, name);
+std::optional<fs::path> FileFinder::file(const fs::path& folder, std::string_view named) {
+  if (auto found = path(folder, named)) return found;
+  const std::string whole = with_slashes(unquoted(named)), last = fs::path(whole).filename().string();
+  return last.empty() || last == whole ? std::nullopt : path(folder, last);
 }
 
 }  // namespace clerestory

@@ -67,7 +67,7 @@ class BoundedBuilder : public nlohmann::json_sax<AnyJson> {
           text(file_name_, ": the key '", quotable(key), "' is given twice in one object; which one counts?"));
     }
     if (keys_.back().size() > limits_.most_keys) {
-      throw InputError(text(file_name_, ": more than ", limits_.most_keys, " keys in one object"));
+      throw InputError(text(file_name_, ": more than ", limits_.most_keys, " keys in one object; part it"));
     }
     next_ = &(*open_.back())[key];
     return true;
@@ -98,7 +98,8 @@ class BoundedBuilder : public nlohmann::json_sax<AnyJson> {
   bool open(AnyJson container) {
     open_.push_back(put(std::move(container)));
     if (open_.size() > static_cast<std::size_t>(limits_.deepest))
-      throw InputError(text(file_name_, ": is nested deeper than ", limits_.deepest, " levels"));
+      throw InputError(
+          text(file_name_, ": is nested deeper than ", limits_.deepest, " levels; is it damaged, or another file?"));
     return true;
   }
   bool close() {

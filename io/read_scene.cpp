@@ -31,8 +31,7 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
   scene.file = file.string();
   if (options.sky) scene.lights.sky = sky_of_option(*options.sky);
   Model model = read_model(file);
-  scene.files = model.files;
-  scene.files.push_back(file);
+  note_files(scene, file, model);
   take_texture_means(model, [](const std::string&) { return false; });
   ModelsInScene none;
   place_model(scene, none, model, file, placement);

@@ -30,9 +30,7 @@ Cells cells_of(std::string_view row, std::string_view separators) {
     skip_blanks();
     const std::size_t closing = row.starts_with('"') ? row.find('"', 1) : row.npos;
     const std::size_t end = row.find_first_of(separators, closing == row.npos ? 0 : closing);
-    std::string_view cell = trimmed(row.substr(0, end));
-    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
-    cells.push_back(cell);
+    cells.push_back(unquoted(row.substr(0, end)));
     if (end == row.npos) break;
     row.remove_prefix(end);
     skip_blanks();
@@ -41,16 +39,7 @@ Cells cells_of(std::string_view row, std::string_view separators) {
   return cells;
 }
 
-/// With a point or a decimal comma.
-std::optional<double> number_of(std::string_view cell) {
-  const std::size_t comma = cell.find(',');
-  if (comma == cell.npos) return to_number(cell);
-  std::string with_point(cell);
-  with_point[comma] = '.';
-  return to_number(with_point);
-}
-
-bool is_number(std::string_view cell) { return number_of(cell).has_value(); }
+bool is_number(std::string_view cell) { return to_decimal(cell).has_value(); }
 
 /// Cells of a row without the empty ones at its end, which spreadsheets leave.
 std::size_t value_count(const Cells& cells) {
@@ -98,10 +87,11 @@ SensorPoint point_of(const Cells& cells, const Order& order, const std::string& 
           text(where, cells.size(), cells.size() == 1 ? " value" : " values", "; expected x,y,z,nx,ny,nz"));
     }
     const std::string_view cell = cells[order[k]];
-    const std::optional<double> number = number_of(cell);
+    const std::optional<double> number = to_decimal(cell);
     if (!number) throw InputError(text(where, kColumns[k], " = '", quotable(cell), "' is not a number"));
     if (!(std::abs(*number) <= 1e12))
-      throw InputError(text(where, kColumns[k], " = ", quotable(cell), " is outside [-1e12, 1e12]"));
+      throw InputError(text(where, kColumns[k], " = ", quotable(cell), " is outside [-1e12, 1e12]; ",
+                            k < 3 ? "positions are in metres" : "give a normal of length 1"));
     value[k] = *number;
   }
   const Vec3 n{value[3], value[4], value[5]};

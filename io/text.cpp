@@ -51,6 +51,12 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
+std::string_view unquoted(std::string_view s) {
+  s = trimmed(s);
+  const bool is_quoted = s.size() >= 2 && s.front() == s.back() && (s.front() == '"' || s.front() == '\'');
+  return is_quoted ? trimmed(s.substr(1, s.size() - 2)) : s;
+}
+
 std::string_view next_word(std::string_view& rest) {
   while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
   std::size_t n = 0;
@@ -79,6 +85,14 @@ std::optional<double> to_number(std::string_view s) {
     return is_below_one(s) ? 0.0 : s[0] == '-' ? -most : most;
   }
   return error == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+std::optional<double> to_decimal(std::string_view s) {
+  const std::size_t comma = s.find(',');
+  if (comma == s.npos) return to_number(s);
+  std::string with_point(s);
+  with_point[comma] = '.';
+  return to_number(with_point);
 }
 
 std::string clean_text(std::string_view s) {

@@ -20,12 +20,16 @@ std::string text(const Part&... part) {
 std::string to_lower(std::string_view s);
 /// s without blanks at either end.
 std::string_view trimmed(std::string_view s);
+/// s without blanks and then without quotation marks of either kind at both ends.
+std::string_view unquoted(std::string_view s);
 /// Next word of `rest`, which is moved behind it; empty at the end. Blanks and tabs separate.
 std::string_view next_word(std::string_view& rest);
 /// Cuts the next line off `rest`, which must not be empty. Lines end in LF, CR LF or CR, which are left out.
 std::string_view next_line(std::string_view& rest);
 /// All of s as a number ("1e3", "-.5", "nan"); nothing when it is not one.
 std::optional<double> to_number(std::string_view s);
+/// The same, where a comma may stand for the decimal point.
+std::optional<double> to_decimal(std::string_view s);
 /// s with control characters and what is not UTF-8 replaced by '?': fit for messages, XML and JSON.
 std::string clean_text(std::string_view s);
 /// A message as one line that can be shown: clean_text(), and words of more than `longest` characters cut, for nobody

@@ -1,12 +1,21 @@
 #include "io/formats/add_mesh.h"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 
 #include "io/text.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
+
+double as_written(float x) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof(digits), x);  // as few digits as tell it from others
+  double value = double{x};
+  if (error == std::errc{}) std::from_chars(digits, end, value);
+  return value;
+}
 
 void add_mesh(Model& model, const LocalMesh& mesh, const Affine& place, SurfaceId surface, const std::string& name) {
   constexpr std::uint32_t kUnused = 0xffffffff;
@@ -31,7 +40,7 @@ void add_mesh(Model& model, const LocalMesh& mesh, const Affine& place, SurfaceI
         if (!is_finite(p) || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate) {
           throw InputError(text(name, ": vertex ", mesh.number.empty() ? v : mesh.number[v], " (from 0) of '",
                                 quotable(model.surfaces[surface]), "' is at (", p.x, ", ", p.y, ", ", p.z,
-                                "), outside [-1e12, 1e12]"));
+                                "), outside [-1e12, 1e12]; is the file damaged, or drawn far from its origin?"));
         }
         place_of[v] = static_cast<std::uint32_t>(soup.vertices.size());
         soup.add_vertex(p);

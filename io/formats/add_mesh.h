@@ -19,6 +19,9 @@ struct LocalMesh {
   std::vector<std::uint32_t> number{};  ///< of each vertex in the file, where that is another than here
 };
 
+/// The number that its writer meant: 0.001f as 0.001, and not as 0.00100000005.
+double as_written(float x);
+
 /// Each call adds the mesh once more; a mirroring transform turns the corners round, so that fronts stay fronts.
 ///
 /// throws  InputError starting with `name` when a coordinate is not finite or beyond 1e12, or a corner has no vertex.

@@ -1,7 +1,6 @@
 #include "io/formats/assimp_model.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -25,15 +24,6 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = 4ull << 30;
 
 std::string str(const aiString& s) { return {s.data, std::min<std::size_t>(s.length, sizeof(s.data) - 1)}; }
-
-/// The number that its writer meant: 0.001f as 0.001, and not as 0.00100000005.
-double as_written(float x) {
-  char digits[32];
-  const auto [end, error] = std::to_chars(digits, digits + sizeof(digits), x);  // as few digits as tell it from others
-  double value = double{x};
-  if (error == std::errc{}) std::from_chars(digits, end, value);
-  return value;
-}
 
 Affine to_affine(const aiMatrix4x4& m) {
   Affine a;
@@ -59,7 +49,7 @@ Spectrum to_spectrum(const aiColor3D& c) { return {colour_part(c.r), colour_part
 
 /// The image that a material shows in the place of its diffuse colour; nothing where it shows none.
 std::optional<ModelTexture> texture_of(const aiMaterial& from, const aiScene& scene,
-                                       const std::filesystem::path& folder) {
+                                       const std::filesystem::path& folder, FileFinder& finder) {
   aiString path;
   if (from.GetTexture(aiTextureType_DIFFUSE, 0, &path) != aiReturn_SUCCESS &&
       from.GetTexture(aiTextureType_BASE_COLOR, 0, &path) != aiReturn_SUCCESS)
@@ -70,7 +60,7 @@ std::optional<ModelTexture> texture_of(const aiMaterial& from, const aiScene& sc
     // Height 0: the bytes of an image file; others are pixels without a format, which no file that we know has.
     if (inside->mHeight == 0) texture.bytes.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
   } else {
-    texture.file = find_file(folder, named).value_or("");
+    texture.file = finder.file(folder, named).value_or("");
   }
   return texture;
 }
@@ -96,13 +86,14 @@ ModelMaterial to_material(const aiMaterial& from) {
   return to;
 }
 
-void add_textures(const aiMaterial& material, const std::filesystem::path& folder,
+void add_textures(const aiMaterial& material, const std::filesystem::path& folder, FileFinder& finder,
                   std::vector<std::filesystem::path>& files) {
   for (int type = aiTextureType_NONE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     const auto kind = static_cast<aiTextureType>(type);
     aiString name;
     for (unsigned k = 0; k < material.GetTextureCount(kind); ++k)
-      if (material.GetTexture(kind, k, &name) == aiReturn_SUCCESS) files.push_back(folder / str(name));
+      if (material.GetTexture(kind, k, &name) == aiReturn_SUCCESS)
+        files.push_back(finder.file(folder, str(name)).value_or(folder / str(name)));
   }
 }
 
@@ -153,9 +144,10 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   const std::string name = short_name(file);
   Model model;
   set_frame(model, scene, extension);
+  FileFinder finder;
   for (unsigned m = 0; m < scene.mNumMaterials; ++m) {
     model.materials.push_back(to_material(*scene.mMaterials[m]));
-    if (auto texture = texture_of(*scene.mMaterials[m], scene, file.parent_path())) {
+    if (auto texture = texture_of(*scene.mMaterials[m], scene, file.parent_path(), finder)) {
       ModelMaterial& material = model.materials.back();
       material.texture = model.textures.size();
       material.material.reflectance = Spectrum(1.0);
@@ -169,7 +161,7 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
   none.described = false;
 
   for (unsigned m = 0; m < scene.mNumMaterials; ++m)
-    add_textures(*scene.mMaterials[m], file.parent_path(), model.files);
+    add_textures(*scene.mMaterials[m], file.parent_path(), finder, model.files);
 
   struct Open {
     const aiNode* node;
@@ -208,7 +200,8 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
       LocalMesh local = to_mesh(mesh);
       if (local.material >= no_material) local.material = no_material;
       faces += mesh.mNumFaces;
-      if (faces > kMaxFaces) throw InputError(text(name, ": more than ", kMaxFaces, " faces"));
+      if (faces > kMaxFaces)
+        throw InputError(text(name, ": more than ", kMaxFaces, " faces; leave out what light does not need"));
       add_mesh(model, local, place, owner.surface, name);
     }
   }
@@ -216,7 +209,7 @@ Model to_model(const aiScene& scene, const std::filesystem::path& file, const st
     model.warnings.push_back(text(scene.mNumLights, " lights are left out: this format gives them no unit. ",
                                   "Use glTF, or \"luminaires\" of a scene file"));
   }
-  if (model.polygons.face_count() == 0) throw InputError(text(name, ": has no faces; nothing to light"));
+  if (model.polygons.face_count() == 0) throw InputError(text(name, ": ", kNoFaces));
   return model;
 }
 

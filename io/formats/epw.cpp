@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "io/find_file.h"
 #include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -31,13 +30,6 @@ Cells cells_of(std::string_view row, char separator) {
   return cells;
 }
 
-/// With a decimal comma where commas do not separate.
-std::optional<double> number_of(std::string_view cell) {
-  std::string with_point(cell);
-  std::replace(with_point.begin(), with_point.end(), ',', '.');
-  return to_number(with_point);
-}
-
 /// One line, with what messages about it begin with.
 struct Line {
   std::string where;
@@ -47,7 +39,7 @@ struct Line {
   double number(std::size_t column, std::string_view name, double low, double high) const {
     if (column >= cells.size())
       throw InputError(text(where, name, " is missing: the line has ", cells.size(), " values"));
-    const std::optional<double> x = number_of(cells[column]);
+    const std::optional<double> x = to_decimal(cells[column]);
     if (!x) throw InputError(text(where, name, " = '", quotable(cells[column]), "' is not a number"));
     if (!(*x >= low && *x <= high))
       throw InputError(text(where, name, " = ", *x, " is outside [", low, ", ", high, "]"));
@@ -60,7 +52,7 @@ struct Line {
   }
   /// A number of [low, missing), from where on it marks that nothing was measured; what is no number is nothing too.
   std::optional<double> measured(std::size_t column, double low, double missing) const {
-    const std::optional<double> x = number_of(cell(column));
+    const std::optional<double> x = to_decimal(cell(column));
     return x && *x >= low && *x < missing ? x : std::nullopt;
   }
 };
@@ -69,7 +61,7 @@ struct Line {
 std::optional<double> radiation(const Line& line, std::size_t column, std::string_view name, std::string& flaw) {
   constexpr double kOffset = -50, kMissing = 9999, kMost = 1500;  // the sun outside the air gives 1367
   if (line.cell(column).empty()) return std::nullopt;
-  const std::optional<double> x = number_of(line.cell(column));
+  const std::optional<double> x = to_decimal(line.cell(column));
   if (x && (*x <= kOffset || *x >= kMissing)) return std::nullopt;
   if (x && *x <= kMost) return std::max(*x, 0.0);
   flaw = x && !std::isnan(*x) ? text(name, " = ", *x, " is outside [0, ", kMost, "] W/m2")
@@ -123,7 +115,8 @@ std::size_t promised_hours(const Line& line, std::vector<std::string>& warnings)
     for (year y = year_month_day(*first).year(); y <= year_month_day(*last).year(); ++y)
       if (const sys_days leap_day = y / February / 29; y.is_leap() && *first <= leap_day && leap_day <= *last) --total;
   }
-  if (total > 100'000) throw InputError(text(line.where, "periods of ", total, " days"));
+  if (total > 100'000)
+    throw InputError(text(line.where, "periods of ", total, " days; it is damaged, download it again"));
   return total > 0 ? static_cast<std::size_t>(total) * 24 : 0;
 }
 
@@ -175,11 +168,11 @@ void settle_hour_0(Weather& weather) {
 void read_location(const Line& line, Weather& weather) {
   if (to_lower(line.cells[0]) != "location")
     throw InputError(text(line.where, "begins with '", quotable(line.cells[0]),
-                          "' and not with LOCATION; it is no EPW weather file"));
+                          "' and not with LOCATION; it is no EPW weather file. Name one"));
   std::size_t n = line.cells.size();
   while (n > 0 && line.cells[n - 1].empty()) --n;
   // A comma in the name of the city, without quotation marks, moves what follows.
-  const std::size_t first = n > 10 && number_of(line.cells[n - 4]) ? n - 4 : 6;
+  const std::size_t first = n > 10 && to_decimal(line.cells[n - 4]) ? n - 4 : 6;
   weather.city = clean_text(line.cell(1));
   weather.place = {line.number(first, "the latitude", -90, 90), line.number(first + 1, "the longitude", -180, 180),
                    line.number(first + 2, "the time zone", -14, 14)};
@@ -224,7 +217,7 @@ Weather read_epw(const std::filesystem::path& file) {
     } else if (number == kHeaderLines) {
       if (to_lower(line.cells[0]) != "data periods")
         throw InputError(text(line.where, "begins with '", quotable(line.cells[0]), "' and not with DATA PERIODS; the ",
-                              "header has 8 lines"));
+                              "header has 8 lines. Download it again"));
       promised = promised_hours(line, weather.warnings);
     } else if (number > kHeaderLines) {
       weather.hours.push_back(hour_of(line));
@@ -239,7 +232,7 @@ Weather read_epw(const std::filesystem::path& file) {
   if (weather.hours.size() < promised)
     throw InputError(text(weather.file, ": has ", weather.hours.size(), " hours; its DATA PERIODS say ", promised,
                           ". The file is cut short"));
-  if (weather.hours.empty()) throw InputError(text(weather.file, ": has no hours"));
+  if (weather.hours.empty()) throw InputError(text(weather.file, ": has no hours; download it again"));
   settle_hour_0(weather);
   return weather;
 }

@@ -143,7 +143,8 @@ class GltfReader {
   Model read() {
     model_.metres_per_unit = 1.0;
     model_.up = Up::y;
-    model_.files = file_.files();
+    for (const std::string& name : file_.file_names())
+      model_.files.push_back(finder_.file(folder_, name).value_or(folder_ / name));
     check_extensions();
     for (std::size_t m = 0; m < file_.list("materials").size(); ++m) {
       model_.materials.push_back(
@@ -157,7 +158,7 @@ class GltfReader {
     read_nodes();
     if (left_out_ > 0) model_.warnings.push_back(text(left_out_, " primitives of points or lines are left out"));
     if (skinned_) model_.warnings.push_back("skinned meshes are taken as they are stored, without their skeleton");
-    if (model_.polygons.face_count() == 0) file_.refuse("has no faces; nothing to light");
+    if (model_.polygons.face_count() == 0) file_.refuse(std::string(kNoFaces));
     return std::move(model_);
   }
 
@@ -212,7 +213,9 @@ class GltfReader {
     if (texture.name.empty()) texture.name = where;
     try {
       if (!is_inside) {
-        texture.file = find_file(folder_, uri).value_or(find_file(folder_, percent_decoded(uri)).value_or(""));
+        auto found = finder_.file(folder_, uri);
+        if (!found) found = finder_.file(folder_, percent_decoded(uri));
+        if (found) texture.file = *found, model_.files.push_back(*found);
       } else if (!uri.empty()) {
         texture.bytes = file_.uri_bytes(image["uri"].get_ref<const std::string&>(), where);
       } else if (image.contains("bufferView")) {
@@ -294,7 +297,7 @@ class GltfReader {
     for (const LocalMesh& part : primitives(mesh, index, mesh_place)) {
       // Vertices cost as well, even where few of them carry faces.
       faces_ += std::max(part.face_begin.size() - 1, part.vertices.size() / 8);
-      if (faces_ > kMaxFaces) file_.refuse(text("more than ", kMaxFaces, " faces"));
+      if (faces_ > kMaxFaces) file_.refuse(text("more than ", kMaxFaces, " faces; leave out what light does not need"));
       file_.spend(part.vertices.size() + part.corner.size(), where);
       add_mesh(model_, part, place, surface, file_.name());
     }
@@ -448,6 +451,7 @@ class GltfReader {
   std::map<std::size_t, std::shared_ptr<const PhotometricWeb>> profiles_;                        // by light
   std::map<const char*, std::pair<std::size_t, std::shared_ptr<const PhotometricWeb>>> parsed_;  // by where they are
   std::map<std::size_t, std::size_t> texture_by_image_;
+  FileFinder finder_;
   std::string stem_;
   Model model_;
   UniqueNames names_;

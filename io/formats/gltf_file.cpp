@@ -176,8 +176,8 @@ std::string_view GltfFile::uri_bytes(const std::string& uri, const std::string& 
   }
 }
 
-std::vector<std::filesystem::path> GltfFile::files() const {
-  std::vector<std::filesystem::path> files;
+std::vector<std::string> GltfFile::file_names() const {
+  std::vector<std::string> names;
   std::vector<const Json*> open{&root_};
   while (!open.empty()) {
     const Json& at = *open.back();
@@ -185,11 +185,11 @@ std::vector<std::filesystem::path> GltfFile::files() const {
     for (const auto& [key, value] : at.items()) {
       if (value.is_structured()) open.push_back(&value);
       if (key != "uri" || !value.is_string()) continue;
-      if (const auto uri = value.get<std::string>(); !uri.starts_with("data:"))
-        files.push_back(file_.parent_path() / percent_decoded(uri));
+      if (const auto& uri = value.get_ref<const std::string&>(); !uri.starts_with("data:"))
+        names.push_back(percent_decoded(uri));
     }
   }
-  return files;
+  return names;
 }
 
 std::string_view GltfFile::buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk) {

@@ -41,8 +41,8 @@ class GltfFile {
   /// What a uri stands for: a data URI, or a file beside the model. Read once, whatever number of times and by whatever
   /// path it is named. `uri` is a text of root().
   std::string_view uri_bytes(const std::string& uri, const std::string& where);
-  /// The files beside the model that its uris name.
-  std::vector<std::filesystem::path> files() const;
+  /// The files beside the model that its uris name, as they are written, percent signs undone.
+  std::vector<std::string> file_names() const;
   std::string_view view_bytes(std::size_t buffer_view) const { return view(buffer_view).bytes; }
 
   /// Takes vertices and corners from what the whole file may grow to, which goes by the bytes it has; refuses when

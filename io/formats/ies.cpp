@@ -29,7 +29,7 @@ class IesReader {
     read_tilt(find_tilt());
     read_luminaire();
     read_angles();
-    read_candelas();
+    read_candelas(words_, scale_, {"candela at V = ", ", H = "}, web_, warnings_);
     words_.end(warnings_, [&](std::size_t more) {
       words_.refuse(text(more, more == 1 ? " more number than " : " more numbers than ", vertical_count_, " x ",
                          horizontal_count_, " candelas; the counts of angles do not fit the data"));
@@ -60,7 +60,7 @@ class IesReader {
     if (kind == "none") return;
     if (kind == "include") return read_tilt_table(words_);
     if (tilt.empty()) words_.refuse("TILT= says nothing; NONE, INCLUDE or the name of a file is known");
-    const auto file = find_file(folder_, tilt);
+    const auto file = FileFinder().file(folder_, tilt);
     if (named_) named_->push_back(file.value_or(folder_ / tilt));
     if (!file) {
       words_.refuse(text("TILT names the file '", quotable(tilt),
@@ -140,18 +140,11 @@ class IesReader {
       if (first == 0) web_.symmetry = WebSymmetry::about_0_180;
       return;
     }
-    if (web_.horizontal.size() == 1) {
-      web_.symmetry = WebSymmetry::rotational;
-    } else if (first == 0 && last == 90) {
-      web_.symmetry = WebSymmetry::quadrants;
-    } else if (first == 0 && last == 180) {
-      web_.symmetry = WebSymmetry::about_0_180;
-    } else if (first == 90 && last == 270) {
-      web_.symmetry = WebSymmetry::about_90_270;
-    } else if (first != 0 || last <= 180) {
+    const auto symmetry = symmetry_of(web_.horizontal);
+    if (!symmetry)
       words_.refuse(text("horizontal angles go from ", first, " to ", last,
                          "; type C takes 0 alone, 0 to 90, 0 to 180, 90 to 270 or 0 to 360"));
-    }
+    web_.symmetry = *symmetry;
   }
 
   void read_ascending(std::vector<double>& angles, std::size_t n, const char* name, double low, double high) {
@@ -163,21 +156,6 @@ class IesReader {
         words_.refuse(text(name, " angles are not ascending: ", a, " follows ", angles.back()));
       angles.push_back(a);
     }
-  }
-
-  void read_candelas() {
-    std::vector<std::size_t> line;
-    const auto what = [&](std::size_t i) {
-      return text("candela at V = ", web_.vertical[i % vertical_count_],
-                  ", H = ", web_.horizontal[i / vertical_count_]);
-    };
-    for (std::size_t i = 0; i < vertical_count_ * horizontal_count_; ++i) {
-      web_.candela.push_back(static_cast<float>(words_.number([&] { return what(i); }) * scale_));
-      line.push_back(words_.line_number());
-    }
-    if (const std::size_t i = settle_negative(web_, warnings_); i < web_.candela.size())
-      throw InputError(text(web_.name, ":", line[i], ": ", what(i), " = ",
-                            std::round(web_.candela[i] / scale_ * 1e6) / 1e6, " is negative"));
   }
 
   /// Planes that stop short of 360 degrees, 0 to 345: the first one closes the circle.

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "io/formats/child_process.h"
 #include "io/formats/ifc_answer.h"
 #include "io/formats/model.h"
 #include "io/formats/run_program.h"
@@ -41,7 +42,7 @@ void refuse_what_is_no_step_file(const std::filesystem::path& file) {
     throw InputError(text(name, ": is XML (ifcXML); export it as a STEP file (.ifc)"));
   if (head.find("ISO-10303-21") == head.npos)
     throw InputError(text(name, ": cannot be read: it does not begin with ISO-10303-21; as IFC files do; ",
-                          "the file is damaged or not what its name says"));
+                          "the file is damaged or not what its name says. Export it again"));
   if (tail.find("END-ISO-10303-21") == tail.npos)
     throw InputError(
         text(name, ": is cut off: its last line END-ISO-10303-21; is missing; copy or export it ", "again"));
@@ -77,7 +78,12 @@ Model read_ifc(const std::filesystem::path& file) {
   // An honest megabyte takes well under a second and some 10 MB; the rest is for slow machines.
   const std::chrono::seconds seconds(30 + 5 * (bytes >> 20));
   const std::uint64_t memory = (1ull << 30) + 60 * bytes;
-  const ProgramLimits limits{.cpu_time = seconds, .time = 2 * seconds, .memory_bytes = memory};
+  // As much as the most faces take, each with three vertices of its own, and the names and numbers beside them.
+  constexpr std::uint64_t kFaceBytes = 3 * sizeof(std::uint32_t) + 9 * sizeof(float);
+  const ProgramLimits limits{.cpu_time = seconds,
+                             .time = 2 * seconds,
+                             .memory_bytes = memory,
+                             .answer_bytes = kMaxFaces * kFaceBytes + (1u << 20) + 4 * bytes};
   const std::string heap = text("--max-old-space-size=", (memory >> 20) / 2);
   std::string answer;
   try {
@@ -86,6 +92,11 @@ Model read_ifc(const std::filesystem::path& file) {
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& failure) {
+    // V8 reserves that much for a machine of WebAssembly, and fails in many ways where it cannot.
+    constexpr std::uint64_t kAddressSpace = std::uint64_t{16} << 30;
+    if (const auto allowed = address_space_limit(); allowed && *allowed < kAddressSpace)
+      throw InputError(text(name, ": cannot be read: the .ifc importer, Node.js, takes some ", kAddressSpace >> 20,
+                            " MiB of address space, and ", *allowed >> 20, " MiB are allowed (ulimit -v); allow more"));
     const std::string product = last_ifc_product(answer);
     throw InputError(text(name, ": cannot be read: the .ifc importer ", quotable(failure.what(), 200),
                           product.empty() ? "" : text(", at '", quotable(product), "'"),

@@ -1,6 +1,5 @@
 #include "io/formats/ifc_answer.h"
 
-#include <charconv>
 #include <cstring>
 
 #include <nlohmann/json.hpp>
@@ -61,22 +60,14 @@ class Reader {
   std::string_view rest_;
 };
 
-/// The number that its writer meant: 0.001f as 0.001, and not as 0.00100000005. web-ifc computes in double and hands
-/// out floats around the middle of each shape; of round sizes nothing is lost by that.
-double as_written(float x) {
-  char digits[32];
-  const auto [end, error] = std::to_chars(digits, digits + sizeof(digits), x);  // as few digits as tell it from others
-  double value = double{x};
-  if (error == std::errc{}) std::from_chars(digits, end, value);
-  return value;
-}
-
 struct PlacedMesh {
   std::uint32_t owner = 0, material = 0;
   Affine place;
   LocalMesh mesh;
 };
 
+/// web-ifc computes in double and hands out floats around the middle of each shape; of round sizes nothing is lost by
+/// that.
 PlacedMesh read_mesh(std::string_view bytes) {
   Reader reader(bytes);
   PlacedMesh read;
@@ -161,8 +152,8 @@ void read_end(const Json& json, const std::filesystem::path& file, Model& model)
   }
   for (const Json& space : json.at("spaces"))
     model.spaces.push_back({spaces.take(word(space, "name")), word(space, "long_name"), {}, {}});
-  for (const Json& fixture : json.at("fixtures"))
-    model.fixtures.push_back(read_ifc_fixture(fixture, model.surfaces.size(), file, model.warnings));
+  IfcLights lights(file, model);
+  for (const Json& fixture : json.at("fixtures")) model.fixtures.push_back(lights.fixture(fixture));
   if (const Json* north = member(json, "north")) model.north_deg = north->get<double>();
   for (const NotRead& note : read_notes(json, "warnings")) model.warnings.push_back(line_of(note));
   for (const NotRead& note : read_notes(json, "complaints"))
@@ -219,13 +210,13 @@ Model model_of_ifc_answer(std::string_view answer, const std::filesystem::path& 
     if (read.owner >= model.surfaces.size() || read.material >= model.materials.size())
       throw std::runtime_error("a mesh belongs to no surface or material");
     faces += read.mesh.corner.size() / 3;
-    if (faces > kMaxFaces) throw InputError(text(name, ": more than ", kMaxFaces, " faces"));
+    if (faces > kMaxFaces)
+      throw InputError(text(name, ": more than ", kMaxFaces, " faces; leave out what light does not need"));
     read.mesh.material = MaterialId(read.material);
     add_mesh(model, read.mesh, read.place, SurfaceId(read.owner), name);
   }
   if (model.polygons.face_count() == 0)
-    throw InputError(text(name, ": has no faces; nothing to light",
-                          model.warnings.empty() ? "" : text("; ", model.warnings.front())));
+    throw InputError(text(name, ": ", kNoFaces, model.warnings.empty() ? "" : text("; ", model.warnings.front())));
   return model;
 }
 

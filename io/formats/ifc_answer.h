@@ -1,9 +1,15 @@
 #pragma once
 // What ifc/read_ifc.mjs answers: records of 4 bytes tag, 4 of nothing, 8 of length, and the bytes, after "CLIFC001".
+//
 //   1  the name of the product that is in work
-//   2  mesh: surface, material, n vertices, m corners (4 bytes each), 3 x 4 numbers to metres (8), 3 n floats, m
-//   corners 3  mesh of a space: the same, with the space for the surface 4  the end: JSON of all else, or {"refused":
-//   why}
+//
+//   2  mesh: surface, material, n vertices, m corners (4 bytes each), 3 x 4 numbers to metres (8 each), 3 n floats (4),
+//      m corners (4)
+//
+//   3  mesh of a space: the same, with the space for the surface
+//
+//   4  the end: JSON of all else, or {"refused": why}
+//
 // Numbers are little-endian.
 
 #include <string>

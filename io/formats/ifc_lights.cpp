@@ -35,14 +35,6 @@ bool ascends(const std::vector<double>& angles, double last) {
          std::adjacent_find(angles.begin(), angles.end(), [](double a, double b) { return !(a < b); }) == angles.end();
 }
 
-/// Which part of the circle planes up to this angle are.
-WebSymmetry symmetry_of(double last_plane) {
-  if (last_plane < 1e-6) return WebSymmetry::rotational;
-  if (std::abs(last_plane - 90) < 1e-6) return WebSymmetry::quadrants;
-  if (std::abs(last_plane - 180) < 1e-6) return WebSymmetry::about_0_180;
-  return WebSymmetry::none;
-}
-
 /// Intensities of planes C with common angles gamma; nothing when it is something else, or a single ray.
 std::shared_ptr<const PhotometricWeb> web_of(const Json& distribution, const std::string& name,
                                              std::vector<std::string>& warnings) {
@@ -63,30 +55,11 @@ std::shared_ptr<const PhotometricWeb> web_of(const Json& distribution, const std
     }
   }
   if (!ascends(web.horizontal, 360)) return nullptr;
-  web.symmetry = symmetry_of(web.horizontal.back());
-  if (web.symmetry == WebSymmetry::none && web.horizontal.back() < 360 - 1e-6) {
-    web.horizontal.push_back(360);  // C360 is C0
-    web.candela.insert(web.candela.end(), web.candela.begin(),
-                       web.candela.begin() + static_cast<std::ptrdiff_t>(web.vertical.size()));
-  }
+  const auto symmetry = symmetry_of(web.horizontal);
+  if (!symmetry) return nullptr;
+  web.symmetry = *symmetry;
   complete_web(web, 0, true, warnings);
   return web.flux > 0 ? std::make_shared<const PhotometricWeb>(std::move(web)) : nullptr;
-}
-
-/// The photometric file that a source names, where it lies beside the IFC file; folders in its name do not count.
-std::shared_ptr<const PhotometricWeb> web_beside(const std::filesystem::path& ifc_file, std::string named,
-                                                 std::vector<std::string>& warnings) {
-  named = named.substr(named.find_last_of("/\\") + 1);  // npos + 1 is 0
-  const std::string extension = to_lower(std::filesystem::path(named).extension().string());
-  std::error_code error;
-  const std::filesystem::path file = ifc_file.parent_path() / named;
-  if ((extension != ".ies" && extension != ".ldt") || !std::filesystem::is_regular_file(file, error)) return nullptr;
-  try {
-    return std::make_shared<const PhotometricWeb>(read_photometry(file, warnings));
-  } catch (const InputError& problem) {
-    warnings.push_back(problem.what());
-    return nullptr;
-  }
 }
 
 /// LightColour says a hue, the flux how much: its luminous mean is 1.
@@ -97,8 +70,26 @@ Spectrum hue_of(const Json& source) {
   return mean > 0 ? colour / mean : Spectrum(1.0);
 }
 
-std::optional<Luminaire> luminaire_of(const Json& source, const std::string& fixture,
-                                      const std::filesystem::path& ifc_file, std::vector<std::string>& warnings) {
+}  // namespace
+
+/// The photometric file that a source names, where it lies beside the IFC file; folders in its name do not count.
+IfcLights::Web IfcLights::web_beside(const std::string& named) {
+  const std::string name = named.substr(named.find_last_of("/\\") + 1);  // npos + 1 is 0
+  const std::string extension = to_lower(std::filesystem::path(name).extension().string());
+  const auto file = finder_.file(ifc_file_.parent_path(), name);
+  if ((extension != ".ies" && extension != ".ldt") || !file) return nullptr;
+  const auto [at, is_new] = webs_.try_emplace(*file);
+  if (!is_new) return at->second;
+  model_.files.push_back(*file);
+  try {
+    at->second = std::make_shared<const PhotometricWeb>(read_photometry(*file, model_.warnings, &model_.files));
+  } catch (const InputError& problem) {
+    model_.warnings.push_back(problem.what());
+  }
+  return at->second;
+}
+
+std::optional<Luminaire> IfcLights::luminaire(const Json& source, const std::string& fixture) {
   const double flux = source.value("flux", 0.0);
   if (!(flux > 0 && flux <= kMostFlux)) return std::nullopt;
   std::string name = source.value("name", "");
@@ -106,13 +97,15 @@ std::optional<Luminaire> luminaire_of(const Json& source, const std::string& fix
   const Spectrum power = hue_of(source) * (flux / kWhiteEfficacy);
   const Json& given = source.contains("distribution") ? source["distribution"] : Json();
   const std::string file = source.value("file", "");
-  const auto web = given.is_object() ? web_of(given, name, warnings) : web_beside(ifc_file, file, warnings);
+  const auto web = given.is_object() ? web_of(given, name, model_.warnings) : web_beside(file);
   if (!web || !(web->flux > 0)) {
-    warnings.push_back(text("the light '", quotable(name), "' is taken as a point of ", flux, " lm: ",
-                            given.is_object() ? "its intensities are not planes of type C with common angles"
-                            : !file.empty()
-                                ? text("its photometric file '", quotable(file), "' is not beside the model")
-                                : "the file does not say where its light goes"));
+    const bool is_there = web || finder_.file(ifc_file_.parent_path(), file);
+    model_.warnings.push_back(
+        text("the light '", quotable(name), "' is taken as a point of ", flux, " lm: ",
+             given.is_object() ? "its intensities are not planes of type C with common angles, all round or by symmetry"
+             : file.empty()    ? "the file does not say where its light goes"
+                               : text("its photometric file '", quotable(file), "' ",
+                                   is_there ? "gives no light that can be read" : "is not beside the model")));
     return Luminaire{name, vector(source, "position"), "", PointLuminaire{power}};
   }
   WebLuminaire luminaire;
@@ -124,10 +117,7 @@ std::optional<Luminaire> luminaire_of(const Json& source, const std::string& fix
   return Luminaire{name, vector(source, "position"), "", luminaire};
 }
 
-}  // namespace
-
-ModelFixture read_ifc_fixture(const Json& json, std::size_t surfaces, const std::filesystem::path& ifc_file,
-                              std::vector<std::string>& warnings) {
+ModelFixture IfcLights::fixture(const Json& json) {
   ModelFixture fixture;
   for (const Json& name : json.at("names")) fixture.names.push_back(clean_text(name.get<std::string>()));
   if (fixture.names.empty()) throw std::runtime_error("a fixture has no name");
@@ -139,13 +129,12 @@ ModelFixture read_ifc_fixture(const Json& json, std::size_t surfaces, const std:
     throw std::runtime_error("the axes of a fixture are not at right angles");
   if (json.contains("surface")) {
     const auto surface = json["surface"].get<std::size_t>();
-    if (surface >= surfaces) throw std::runtime_error("a fixture has a body that is no surface");
+    if (surface >= model_.surfaces.size()) throw std::runtime_error("a fixture has a body that is no surface");
     fixture.body = SurfaceId(surface);
   }
   for (const Json& source : json.at("sources")) {
-    const auto luminaire = luminaire_of(source, fixture.names.front(), ifc_file, warnings);
-    if (luminaire)
-      fixture.lights.push_back(*luminaire);
+    if (auto light = luminaire(source, fixture.names.front()))
+      fixture.lights.push_back(std::move(*light));
     else
       fixture.mute.push_back(clean_text(source.value("kind", "")));
   }

@@ -46,7 +46,8 @@ class LdtReader {
     read_lamps();
     for (int i = 0; i < 10; ++i) value("a direct ratio");
     read_angles();
-    read_candelas(conversion * web_.lamp_flux / 1000);
+    read_candelas(words_, conversion * web_.lamp_flux / 1000, {"intensity at gamma = ", " in plane C = "}, web_,
+                  warnings_);
     words_.end(warnings_, [&](std::size_t) {
       words_.refuse(text("more values than ", gammas_, " intensities in each of ", stored_,
                          " planes; the counts or the symmetry do not fit the data"));
@@ -135,20 +136,6 @@ class LdtReader {
       angles.push_back(a);
     }
     return angles;
-  }
-
-  void read_candelas(double scale) {
-    std::vector<std::size_t> line;
-    const auto what = [&](std::size_t i) {
-      return text("intensity at gamma = ", web_.vertical[i % gammas_], " in plane C = ", web_.horizontal[i / gammas_]);
-    };
-    for (std::size_t i = 0; i < stored_ * gammas_; ++i) {
-      web_.candela.push_back(static_cast<float>(words_.number([&] { return what(i); }) * scale));
-      line.push_back(words_.line_number());
-    }
-    if (const std::size_t i = settle_negative(web_, warnings_); i < web_.candela.size())
-      throw InputError(text(web_.name, ":", line[i], ": ", what(i), " = ",
-                            std::round(web_.candela[i] / scale * 1e6) / 1e6, " is negative"));
   }
 
   void skip(std::string_view what) {

@@ -57,6 +57,9 @@ struct Model {
   std::optional<Up> up;                      ///< when the file says its axes
 };
 
+/// What is said of a model without a face.
+inline constexpr std::string_view kNoFaces =
+    "has no faces; nothing to light. Export its surfaces as polygons or triangles";
 inline constexpr std::string_view kDefaultMaterial = "default";  ///< name where the model has none
 inline constexpr std::size_t kMaxFaces = 30'000'000;  ///< of one scene; more is a mistake, or a file made to do harm
 inline constexpr double kLargestCoordinate = 1e12;    ///< farther than this a coordinate is a mistake
@@ -74,11 +77,6 @@ Model read_ply(const std::filesystem::path& file);
 Model read_stl(const std::filesystem::path& file);
 Model read_off(const std::filesystem::path& file);
 Model read_ifc(const std::filesystem::path& file);
-
-/// Materials of a Wavefront MTL file, in its order. What is left out is added to `warnings`, what they show to
-/// `textures`, files that it names to `named`.
-std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<ModelTexture>& textures,
-                                    std::vector<std::string>& warnings, std::vector<std::filesystem::path>& named);
 
 /// Takes a transparent material (opacity below 1/2) as glass that passes what it does not cover.
 void apply_opacity(Material& material, double opacity);

@@ -12,27 +12,28 @@ namespace {
 class Writer {
  public:
   template <class T>
-  void plain(T& value) {
+  void plain(const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
   template <class T>
-  void array(std::vector<T>& values) {
+  void array(const std::vector<T>& values) {
     size(values);
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
-  void string(std::string& s) {
+  void string(const std::string& s) {
     size(s);
     bytes += s;
   }
-  void path(std::filesystem::path& file) {
-    std::string name = file.string();
-    string(name);
-  }
+  void path(const std::filesystem::path& file) { string(file.string()); }
   template <class Container>
-  void size(Container& container) {
-    std::uint64_t n = container.size();
-    plain(n);
+  void size(const Container& container) {
+    plain(std::uint64_t{container.size()});
+  }
+  template <class T>
+  void maybe(const std::optional<T>& value) {
+    plain(value.has_value());
+    if (value) plain(*value);
   }
   std::string bytes;
 };
@@ -61,6 +62,12 @@ class Reader {
   void size(Container& container) {
     container.resize(count(1));
   }
+  template <class T>
+  void maybe(std::optional<T>& value) {
+    bool there = false;
+    plain(there);
+    if (there) plain(value.emplace());
+  }
   bool at_end() const { return rest_.empty(); }
 
  private:
@@ -86,52 +93,43 @@ class Reader {
   std::string_view rest_;
 };
 
-template <class Walker, class T, class Visit>
-void each(Walker& walker, std::vector<T>& values, const Visit& visit) {
+template <class Walker, class Values, class Visit>
+void each(Walker& walker, Values& values, const Visit& visit) {
   walker.size(values);
-  for (T& value : values) visit(value);
+  for (auto& value : values) visit(value);
 }
 
-template <class Walker, class T>
-void maybe(Walker& walker, std::optional<T>& value) {
-  bool there = value.has_value();
-  walker.plain(there);
-  if (there && !value) value.emplace();
-  if (there) walker.plain(*value);
-}
-
-template <class Walker>
-void walk(Walker& walker, Model& model) {
+/// AnyModel is const for a Writer.
+template <class Walker, class AnyModel>
+void walk(Walker& walker, AnyModel& model) {
   walker.array(model.polygons.vertices);
   walker.array(model.polygons.corner);
   walker.array(model.polygons.face_begin);
   walker.array(model.polygons.material);
   walker.array(model.polygons.surface);
-  each(walker, model.materials, [&](ModelMaterial& m) {
+  each(walker, model.materials, [&](auto& m) {
     walker.string(m.material.name);
     walker.plain(m.material.kind);
     walker.plain(m.material.reflectance);
     walker.plain(m.material.transmittance);
     walker.plain(m.material.exitance);
-    maybe(walker, m.material.total_power);
+    walker.maybe(m.material.total_power);
     walker.plain(m.material.sides);
     walker.plain(m.described);
-    maybe(walker, m.texture);
-    maybe(walker, m.glow_texture);
+    walker.maybe(m.texture);
+    walker.maybe(m.glow_texture);
     walker.plain(m.unitless_glow);
   });
-  each(walker, model.textures, [&](ModelTexture& texture) {
-    std::string file = texture.file.string();
+  each(walker, model.textures, [&](auto& texture) {
     walker.string(texture.name);
-    walker.string(file);
+    walker.path(texture.file);
     walker.string(texture.bytes);
-    texture.file = file;
   });
-  each(walker, model.surfaces, [&](std::string& name) { walker.string(name); });
-  each(walker, model.warnings, [&](std::string& warning) { walker.string(warning); });
-  each(walker, model.files, [&](std::filesystem::path& file) { walker.path(file); });
-  maybe(walker, model.metres_per_unit);
-  maybe(walker, model.up);
+  each(walker, model.surfaces, [&](auto& name) { walker.string(name); });
+  each(walker, model.warnings, [&](auto& warning) { walker.string(warning); });
+  each(walker, model.files, [&](auto& file) { walker.path(file); });
+  walker.maybe(model.metres_per_unit);
+  walker.maybe(model.up);
 }
 
 bool is_consistent(const Model& model) {
@@ -154,7 +152,7 @@ bool is_consistent(const Model& model) {
 
 std::string to_bytes(const Model& model) {
   Writer writer;
-  walk(writer, const_cast<Model&>(model));  // writing changes nothing
+  walk(writer, model);
   return std::move(writer.bytes);
 }
 

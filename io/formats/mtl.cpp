@@ -1,11 +1,11 @@
 // Wavefront MTL: newmtl, Kd, Ke, their textures map_Kd and map_Ke, d and Tr. Source: Ramey, Rose & Tyerman, "MTL
 // material format", 1995.
 
+#include "io/formats/mtl.h"
+
 #include <algorithm>
 #include <numbers>
 
-#include "io/find_file.h"
-#include "io/formats/model.h"
 #include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -33,6 +33,7 @@ std::optional<Spectrum> read_colour(std::string_view rest, const std::string& wh
   return colour;
 }
 
+/// By a keyword in lower case.
 bool names_texture(std::string_view key) {
   return key.starts_with("map_") || key == "bump" || key == "disp" || key == "decal" || key == "refl" || key == "norm";
 }
@@ -63,26 +64,25 @@ std::string_view image_name(std::string_view rest) {
   }
 }
 
-/// Index of the texture that a line names; it joins the others when it is new.
-std::size_t texture_named(std::string_view rest, const std::filesystem::path& folder,
-                          std::vector<ModelTexture>& textures) {
-  const std::string_view named = image_name(rest);
-  auto file = find_file(folder, named);
-  if (!file) file = find_file(folder, named.substr(0, named.find(" -")));  // options may follow as well
-  const std::string_view name = unquoted(named);
-  ModelTexture texture{std::string(name.substr(name.find_last_of("/\\") + 1)), {}, {}};
-  if (file) texture.name = short_name(*file), texture.file = *file;
-  const auto same = std::ranges::find_if(
-      textures, [&](const ModelTexture& other) { return other.file == texture.file && other.name == texture.name; });
-  if (same != textures.end()) return static_cast<std::size_t>(same - textures.begin());
-  textures.push_back(std::move(texture));
-  return textures.size() - 1;
-}
-
 }  // namespace
 
-std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vector<ModelTexture>& textures,
-                                    std::vector<std::string>& warnings, std::vector<std::filesystem::path>& named) {
+MtlReader::Image MtlReader::image_of(std::string_view rest, const std::filesystem::path& folder) {
+  const std::string_view named = image_name(rest);
+  auto file = files_.file(folder, named);
+  if (const std::size_t options = named.find(" -"); !file && options != named.npos)
+    file = files_.file(folder, named.substr(0, options));  // they may follow as well
+  if (file) return {short_name(*file), *file};
+  const std::string_view name = unquoted(named);
+  return {std::string(name.substr(name.find_last_of("/\\") + 1)), {}};
+}
+
+std::size_t MtlReader::texture(const Image& image) {
+  const auto [at, is_new] = textures_.try_emplace({image.file, image.name}, model_.textures.size());
+  if (is_new) model_.textures.push_back({image.name, image.file, {}});
+  return at->second;
+}
+
+std::vector<ModelMaterial> MtlReader::read(const std::filesystem::path& file) {
   const std::string bytes = read_input_file(file, kMaxBytes);
   const std::string name = short_name(file);
   std::vector<ModelMaterial> materials;
@@ -93,8 +93,9 @@ std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vect
     const std::string where = text(name, ":", ++line_number, ": ");
     const std::string_view key = next_word(rest);
     if (key.empty() || key[0] == '#') continue;
-    if (names_texture(key))
-      if (const auto image = find_file(file.parent_path(), image_name(rest))) named.push_back(*image);
+    const std::string map = to_lower(key);
+    const Image image = names_texture(map) ? image_of(rest, file.parent_path()) : Image{};
+    if (!image.file.empty()) model_.files.push_back(image.file);
     if (key == "newmtl") {
       Material& material = materials.emplace_back().material;
       material.name = trimmed(rest);
@@ -113,8 +114,8 @@ std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vect
       const std::optional<Spectrum> colour = read_colour(rest, where);
       if (!colour) {
         current.described = current.described || key == "Kd";
-        warnings.push_back(text(where, "spectral and xyz colours are not read; '", material.name, "' keeps ",
-                                key == "Kd" ? "reflectance 0.5" : "no emission"));
+        model_.warnings.push_back(text(where, "spectral and xyz colours are not read; '", material.name, "' keeps ",
+                                       key == "Kd" ? "reflectance 0.5" : "no emission"));
       } else if (key == "Kd") {
         material.reflectance = *colour;
         current.described = true;
@@ -130,8 +131,8 @@ std::vector<ModelMaterial> read_mtl(const std::filesystem::path& file, std::vect
         throw InputError(text(where, key, " = '", quotable(word), "' is outside [0, 1]"));
       }
       (key == "d" ? dissolve : opacity).back() = key == "d" ? *value : 1 - *value;
-    } else if (const std::string map = to_lower(key); map == "map_kd" || map == "map_ke") {
-      (map == "map_kd" ? current.texture : current.glow_texture) = texture_named(rest, file.parent_path(), textures);
+    } else if (map == "map_kd" || map == "map_ke") {
+      (map == "map_kd" ? current.texture : current.glow_texture) = texture(image);
     }
   }
   // d wins: writers do not agree on whether Tr 1 is clear or solid.

@@ -1,7 +1,6 @@
 #pragma once
 // Numbers of a text file, one after the other, with the line they stand on.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,7 +46,7 @@ class NumberWords {
     }
   }
 
-  /// The next word as a number. what: "candela 3 of plane H = 30".
+  /// The next word as a number, with a decimal comma where commas do not separate. what: "candela 3 of plane H = 30".
   template <class What>
   double number(const What& what) {
     const std::string_view w = word();
@@ -56,19 +55,10 @@ class NumberWords {
   }
   template <class What>
   double checked(std::string_view w, const What& what) const {
-    const auto value = number_of(w);
+    const auto value = to_decimal(w);
     if (!value) refuse(text("'", quotable(w), "' is not a number; expected ", what()));
     if (!(*value > -1e12 && *value < 1e12)) refuse(text(what(), " = ", quotable(w), " is out of every range"));
     return *value;
-  }
-
-  /// A word as a number, perhaps with a decimal comma, where commas do not separate.
-  static std::optional<double> number_of(std::string_view w) {
-    const std::size_t comma = w.find(',');
-    if (comma == w.npos) return to_number(w);
-    std::string with_point(w);
-    with_point[comma] = '.';
-    return to_number(with_point);
   }
 
   /// What stands behind the data. Text is left out with a warning; numbers mean that the data is not what it seems.
@@ -77,13 +67,13 @@ class NumberWords {
     const std::string_view first = word();
     if (first.empty()) return;
     const std::size_t line = line_;
-    if (!number_of(first)) {
+    if (!to_decimal(first)) {
       warnings.push_back(
           text(file_, ":", line, ": the text behind the data, '", quotable(first), " ...', is left out"));
       return;
     }
     std::size_t more = 1;
-    for (std::string_view w = word(); !w.empty(); w = word()) more += number_of(w).has_value();
+    for (std::string_view w = word(); !w.empty(); w = word()) more += to_decimal(w).has_value();
     line_ = line;
     refuse_numbers(more);
   }

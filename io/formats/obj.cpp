@@ -6,8 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "io/find_file.h"
-#include "io/formats/model.h"
+#include "io/formats/mtl.h"
 #include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -59,7 +58,9 @@ class ObjReader {
       read_statement(line);
     }
     if (model_.polygons.face_count() == 0) {
-      throw InputError(text(name_, ": has no faces (no 'f' statement with three corners or more); nothing to light"));
+      throw InputError(text(name_,
+                            ": has no faces (no 'f' statement with three corners or more); nothing to light. Export "
+                            "its surfaces as polygons"));
     }
     finish();
     return std::move(model_);
@@ -159,13 +160,13 @@ class ObjReader {
     const std::filesystem::path folder = file_.parent_path();
     const std::string lower = to_lower(names);
     const bool is_one = lower.find(".mtl") == lower.rfind(".mtl");
-    if (const auto library = is_one ? find_file(folder, names) : find_path(folder, names))
+    if (const auto library = is_one ? mtl_.files().file(folder, names) : mtl_.files().path(folder, names))
       return read_library(*library);
     while (!(names = trimmed(names)).empty()) {
       const std::size_t closing = names.front() == '"' ? names.find('"', 1) : names.npos;
       std::string_view name = closing == names.npos ? next_word(names) : names.substr(0, closing + 1);
       if (closing != names.npos) names.remove_prefix(closing + 1);
-      if (const auto library = find_file(folder, name))
+      if (const auto library = mtl_.files().file(folder, name))
         read_library(*library);
       else
         model_.warnings.push_back(
@@ -178,7 +179,7 @@ class ObjReader {
     std::error_code error;
     if (!libraries_.insert(std::filesystem::weakly_canonical(library, error).string()).second) return;
     model_.files.push_back(library);
-    for (ModelMaterial& material : read_mtl(library, model_.textures, model_.warnings, model_.files)) {
+    for (ModelMaterial& material : mtl_.read(library)) {
       described_.try_emplace(material.material.name, material);
     }
   }
@@ -199,6 +200,7 @@ class ObjReader {
   std::filesystem::path file_;
   std::string name_;
   Model model_;
+  MtlReader mtl_{model_};
   std::vector<Vec3> vertices_;        // all of the file; the model takes those that faces use
   std::vector<std::uint32_t> place_;  // of each vertex in the model
   std::vector<std::uint32_t> face_;

@@ -14,7 +14,7 @@ Model model_without_materials() {
 }
 
 void require_faces(const Model& model, const std::string& name) {
-  if (model.polygons.face_count() == 0) throw InputError(text(name, ": has no faces; nothing to light"));
+  if (model.polygons.face_count() == 0) throw InputError(text(name, ": ", kNoFaces));
 }
 
 }  // namespace clerestory

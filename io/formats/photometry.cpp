@@ -5,6 +5,7 @@
 
 #include "io/formats/ies.h"
 #include "io/formats/ldt.h"
+#include "io/formats/number_words.h"
 #include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -67,8 +68,7 @@ void mirror_right_to_left(PhotometricWeb& web) {
   web.candela = std::move(candela);
 }
 
-}  // namespace
-
+/// returns  the place of the first negative candela that is no meter's offset; candela.size() where there is none.
 std::size_t settle_negative(PhotometricWeb& web, std::vector<std::string>& warnings) {
   std::vector<float>& I = web.candela;
   const float least = -0.05f * *std::max_element(I.begin(), I.end());
@@ -81,6 +81,24 @@ std::size_t settle_negative(PhotometricWeb& web, std::vector<std::string>& warni
                           " cd; 0 is taken"));
   for (float& x : I) x = std::max(x, 0.0f);
   return I.size();
+}
+
+}  // namespace
+
+void read_candelas(NumberWords& words, double scale, const std::pair<std::string_view, std::string_view>& at,
+                   PhotometricWeb& web, std::vector<std::string>& warnings) {
+  const std::size_t n = web.vertical.size();
+  std::vector<std::size_t> line;
+  const auto what = [&](std::size_t i) {
+    return text(at.first, web.vertical[i % n], at.second, web.horizontal[i / n]);
+  };
+  for (std::size_t i = 0; i < n * web.horizontal.size(); ++i) {
+    web.candela.push_back(static_cast<float>(words.number([&] { return what(i); }) * scale));
+    line.push_back(words.line_number());
+  }
+  if (const std::size_t i = settle_negative(web, warnings); i < web.candela.size())
+    throw InputError(text(web.name, ":", line[i], ": ", what(i), " = ", std::round(web.candela[i] / scale * 1e6) / 1e6,
+                          " is negative, more than a meter's offset is; correct it, or take another file"));
 }
 
 void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vector<std::string>& warnings) {
@@ -104,6 +122,25 @@ void complete_web(PhotometricWeb& web, double declared, bool at_most, std::vecto
                             at_most ? "more than its lamps give, " : "and not to what it declares, ",
                             std::round(declared * 10) / 10, " lm; the intensities count"));
   }
+}
+
+std::optional<WebSymmetry> symmetry_of(const std::vector<double>& horizontal) {
+  if (horizontal.size() == 1) return WebSymmetry::rotational;
+  const double first = horizontal.front(), last = horizontal.back();
+  if (first == 90 && last == 270) return WebSymmetry::about_90_270;
+  if (first != 0) return std::nullopt;
+  if (last == 90) return WebSymmetry::quadrants;
+  if (last == 180) return WebSymmetry::about_0_180;
+  return last > 180 ? std::optional(WebSymmetry::none) : std::nullopt;
+}
+
+std::shared_ptr<const PhotometricWeb> PhotometryFiles::read(const std::filesystem::path& file,
+                                                            std::vector<std::string>& warnings,
+                                                            std::vector<std::filesystem::path>& named) {
+  auto& web = read_before_[file.lexically_normal()];
+  if (web) return web;
+  named.push_back(file);
+  return web = std::make_shared<const PhotometricWeb>(read_photometry(file, warnings, &named));
 }
 
 PhotometricWeb read_photometry(const std::filesystem::path& file, std::vector<std::string>& warnings,

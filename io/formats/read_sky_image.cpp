@@ -38,16 +38,23 @@ SkyImage read_sky_image(const std::filesystem::path& file, std::vector<std::stri
     const ApartLimits limits{.time = std::chrono::seconds(60), .memory_bytes = std::uint64_t{4} << 30};
     answer = run_apart([&] { return decode(file.string(), extension == ".hdr" ? "hdr" : "openexr"); }, limits);
   } catch (const ApartFailure& failure) {
-    throw InputError(text(name, ": reading it ", failure.what(), "; the file is damaged"));
+    throw InputError(text(name, ": reading it ", failure.what(), "; the file is damaged, save or download it again"));
   }
   if (answer.empty() || answer[0] != 'i') {
     throw InputError(text(name, ": ", answer.empty() ? "cannot be read" : answer.substr(1)));
   }
 
   SkyImage image;
-  const char* from = answer.data() + 1;
-  const auto take = [&](void* to, std::size_t bytes) { std::memcpy(to, from, bytes), from += bytes; };
+  std::string_view rest = std::string_view(answer).substr(1);
+  const auto take = [&](void* to, std::size_t bytes) {
+    if (bytes > rest.size())
+      throw InputError(text(name, ": reading it breaks off; the file is damaged, save or download it again"));
+    std::memcpy(to, rest.data(), bytes), rest.remove_prefix(bytes);
+  };
   take(&image.width, sizeof image.width), take(&image.height, sizeof image.height);
+  const std::size_t most = rest.size() / (3 * sizeof(float));  // pixels that are there, whatever the child says
+  if (image.height == 0 || image.width > most / image.height)
+    throw InputError(text(name, ": reading it breaks off; the file is damaged, save or download it again"));
   image.value.resize(3 * image.width * image.height);
   take(image.value.data(), image.value.size() * sizeof(float));
   std::size_t negative = 0;

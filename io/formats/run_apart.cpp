@@ -8,13 +8,10 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 
+#include "io/formats/child_process.h"
 #include "io/text.h"
 
 namespace clerestory {
@@ -33,32 +30,12 @@ std::uint64_t mapped_bytes() {
   return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-std::uint64_t physical_bytes() {
-  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
-void limit(decltype(RLIMIT_CORE) what, std::uint64_t value) {
-  rlimit bound{};
-  getrlimit(what, &bound);
-  if (bound.rlim_max == RLIM_INFINITY || value < bound.rlim_max) bound.rlim_cur = value;
-  setrlimit(what, &bound);
-}
-
 [[noreturn]] void be_the_child(const std::function<std::string()>& work, const ApartLimits& limits, int out,
-                               std::uint64_t mapped, pid_t parent) {
-#ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a child nobody waits for should not go on
-#endif
-  if (getppid() != parent) _exit(kExitFailed);
-  // What signals do in the parent is not for the child: it owns no files. Ctrl-C reaches both, and the parent decides.
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE, SIGTERM, SIGXCPU, SIGXFSZ, SIGALRM})
-    std::signal(signal, SIG_DFL);
-  for (const int signal : {SIGINT, SIGHUP}) std::signal(signal, SIG_IGN);
+                               std::uint64_t address_space, pid_t parent) {
+  begin_child(parent, static_cast<std::uint64_t>(limits.time.count()) + 1);
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, static_cast<std::uint64_t>(limits.time.count()) + 1);
-  if (mapped > 0) limit(RLIMIT_AS, mapped + std::min(limits.memory_bytes, physical_bytes()));
+  limit(RLIMIT_AS, address_space);
   try {
     const std::string answer = work();
     for (std::size_t sent = 0; sent < answer.size();) {
@@ -96,41 +73,40 @@ bool read_until(std::chrono::steady_clock::time_point deadline, int in, std::str
 }  // namespace
 
 std::string run_apart(const std::function<std::string()>& work, const ApartLimits& limits) {
-  int pipe_ends[2];
-  if (pipe(pipe_ends) != 0) throw std::runtime_error(text("cannot make a pipe: ", std::strerror(errno)));
+  Pipe pipe = Pipe::make();
   const std::uint64_t mapped = mapped_bytes();
+  const std::optional<std::uint64_t> allowed = address_space_limit();
+  const std::uint64_t memory = mapped + std::min(limits.memory_bytes, physical_bytes());
+  const bool is_tight = allowed && *allowed < memory;
   const pid_t parent = getpid(), child = fork();
-  if (child < 0) {
-    const int error = errno;
-    close(pipe_ends[0]);
-    close(pipe_ends[1]);
-    throw std::runtime_error(text("cannot start a process: ", std::strerror(error)));
-  }
+  if (child < 0) throw std::runtime_error(text("cannot start a process: ", std::strerror(errno)));
   if (child == 0) {
-    close(pipe_ends[0]);
-    be_the_child(work, limits, pipe_ends[1], mapped, parent);
+    pipe.out.close();
+    be_the_child(work, limits, pipe.in.get(), mapped > 0 ? memory : RLIM_INFINITY, parent);
   }
-  close(pipe_ends[1]);
+  pipe.in.close();
   std::string answer;
   bool in_time = false;
   std::exception_ptr trouble;  // no memory for the answer: the child must still be waited for
   try {
-    in_time = read_until(std::chrono::steady_clock::now() + limits.time, pipe_ends[0], answer);
+    in_time = read_until(std::chrono::steady_clock::now() + limits.time, pipe.out.get(), answer);
   } catch (...) {
     trouble = std::current_exception();
   }
-  close(pipe_ends[0]);
+  pipe.out.close();
   if (!in_time) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = status_of(child);
   if (trouble) std::rethrow_exception(trouble);
   if (!in_time || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)) {
     throw ApartFailure(text("took longer than ", limits.time.count(), " s"));
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == kExitDone) return answer;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kExitOutOfMemory) throw ApartFailure("ran out of memory");
-  throw ApartFailure("crashed");
+  const bool out_of_memory = WIFEXITED(status) && WEXITSTATUS(status) == kExitOutOfMemory;
+  if (out_of_memory && is_tight) throw std::bad_alloc();
+  if (out_of_memory) throw ApartFailure("ran out of memory");
+  throw ApartFailure(is_tight
+                         ? text("crashed, which the limit of ", *allowed >> 20, " MiB on memory (ulimit -v) may cause")
+                         : "crashed");
 }
 
 }  // namespace clerestory

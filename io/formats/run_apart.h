@@ -24,7 +24,8 @@ class ApartFailure : public std::runtime_error {
 /// Runs work() in a child process and returns what it returned. The child shares nothing else: what work() changes
 /// stays there. Its standard error goes nowhere.
 ///
-/// throws   ApartFailure when the child ended another way or went over a limit.
+/// throws   ApartFailure when the child ended another way or went over a limit; std::bad_alloc when a limit that this
+///          process has itself (ulimit -v) left it too little memory.
 /// Limits:  POSIX only (fork). work() must not use threads of this process or locks that they may hold.
 std::string run_apart(const std::function<std::string()>& work, const ApartLimits& limits);
 

@@ -9,13 +9,10 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 
+#include "io/formats/child_process.h"
 #include "io/text.h"
 
 namespace clerestory {
@@ -24,54 +21,10 @@ namespace {
 constexpr auto kLook = std::chrono::milliseconds(100);
 constexpr std::size_t kComplaint = 4096;  // bytes kept of standard error
 
-/// A file descriptor that is closed at the end, and is none of 0, 1, 2, which the child needs.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) {
-    if (fd < 0) return;
-    fd_ = fcntl(fd, F_DUPFD_CLOEXEC, 3);
-    ::close(fd);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-  int get() const { return fd_; }
-  void close() {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-  }
-
- private:
-  int fd_ = -1;
-};
-
-struct Pipe {
-  Descriptor out, in;  ///< to read from, to write to
-  static Pipe make() {
-    int ends[2];
-    if (pipe(ends) != 0) throw std::runtime_error(text("cannot make a pipe: ", std::strerror(errno)));
-    return {Descriptor(ends[0]), Descriptor(ends[1])};
-  }
-};
-
-void limit(decltype(RLIMIT_CORE) what, rlim_t value) {
-  rlimit bound{};
-  getrlimit(what, &bound);
-  if (bound.rlim_max == RLIM_INFINITY || value < bound.rlim_max) bound.rlim_cur = value;
-  setrlimit(what, &bound);
-}
-
 /// Only what may be done between fork and exec in a process of threads.
 [[noreturn]] void be_the_program(char* const* command, char* const* environment, int in, int out, int complaints,
-                                 rlim_t cpu_seconds, pid_t parent) {
-#ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);  // it ended before that was set
-#endif
-  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE, SIGXCPU})
-    std::signal(signal, SIG_DFL);
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, cpu_seconds);
+                                 std::uint64_t cpu_seconds, pid_t parent) {
+  begin_child(parent, cpu_seconds);
   dup2(in, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
   dup2(complaints, STDERR_FILENO);
@@ -116,6 +69,7 @@ std::string listen(pid_t child, int out, int complaints, const ProgramLimits& li
   std::string block(1 << 16, '\0');
   bool open[2] = {true, true};
   auto next_look = start + kLook;
+  const std::uint64_t memory = std::min(limits.memory_bytes, physical_bytes());
   while (open[0] || open[1]) {
     pollfd ready[2] = {{open[0] ? out : -1, POLLIN, 0}, {open[1] ? complaints : -1, POLLIN, 0}};
     poll(ready, 2, static_cast<int>(kLook.count()));
@@ -129,8 +83,7 @@ std::string listen(pid_t child, int out, int complaints, const ProgramLimits& li
     if (now < next_look) continue;
     next_look = now + kLook;
     if (now - start > limits.time) return text("took longer than ", limits.time.count(), " s");
-    if (resident_bytes(child) > limits.memory_bytes)
-      return text("needed more than ", limits.memory_bytes >> 20, " MiB of memory");
+    if (resident_bytes(child) > memory) return text("needed more than ", memory >> 20, " MiB of memory");
   }
   return {};
 }
@@ -154,7 +107,7 @@ void run_program(const std::vector<std::string>& command, const std::filesystem:
   if (child < 0) throw std::runtime_error(text("cannot start a process: ", std::strerror(errno)));
   if (child == 0) {
     be_the_program(words.data(), environment, in.get(), out.in.get(), complaints.in.get(),
-                   static_cast<rlim_t>(limits.cpu_time.count()), self);
+                   static_cast<std::uint64_t>(limits.cpu_time.count()), self);
   }
   out.in.close();
   complaints.in.close();
@@ -166,9 +119,7 @@ void run_program(const std::vector<std::string>& command, const std::filesystem:
     trouble = std::current_exception();
   }
   if (!why.empty() || trouble) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = status_of(child);
   if (trouble) std::rethrow_exception(trouble);
   if (!why.empty()) throw ProgramFailure(why);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;

@@ -83,7 +83,9 @@ std::vector<Answer> parsed_all(std::string_view answers, std::size_t count) {
   std::vector<Answer> all;
   while (all.size() < count) {
     std::size_t n = 0;
+    if (answers.size() < sizeof n) throw ApartFailure("breaks off");
     std::memcpy(&n, answers.data(), sizeof n);
+    if (n > answers.size() - sizeof n) throw ApartFailure("breaks off");
     all.push_back(parsed(answers.substr(sizeof n, n)));
     answers.remove_prefix(sizeof n + n);
   }

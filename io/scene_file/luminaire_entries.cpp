@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
-#include "io/formats/photometry.h"
 #include "io/input_file.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -21,8 +19,9 @@ constexpr Range kFlux{.low = 0,
 
 class LuminaireReader {
  public:
-  LuminaireReader(const std::filesystem::path& folder, ChannelCount& channels, Scene& scene)
-      : folder_(folder), channels_(channels), scene_(scene) {}
+  LuminaireReader(const std::filesystem::path& folder, PhotometryFiles& photometry, ChannelCount& channels,
+                  Scene& scene)
+      : folder_(folder), photometry_(photometry), channels_(channels), scene_(scene) {}
 
   void read(const JsonObject& object, std::size_t number, LightSpec& lights) {
     std::string name = object.word("name").value_or("");
@@ -68,7 +67,7 @@ class LuminaireReader {
   static Spectrum scale_to(const Spectrum& power, const JsonObject& object, const PhotometricWeb& web) {
     if (web.flux > 0) return power / web.flux;
     throw InputError(text(object.place("file"), " '", web.name, "' gives no light; its flux cannot be scaled to ",
-                          "the one the scene asks for"));
+                          "the one the scene asks for; leave that out, or name another file"));
   }
 
   /// In watts, or nothing; before dimming.
@@ -125,30 +124,25 @@ class LuminaireReader {
 
   std::shared_ptr<const PhotometricWeb> web_of(const JsonObject& object) {
     const std::string named = *object.word("file");
-    const std::filesystem::path file = (folder_ / named).lexically_normal();
-    auto& web = read_before_[file];
-    if (!web) {
-      require_file(file, object.place("file"), named);
-      web = std::make_shared<const PhotometricWeb>(read_photometry(file, scene_.warnings, &scene_.files));
-    }
-    return web;
+    require_file(folder_ / named, object.place("file"), named);
+    return photometry_.read(folder_ / named, scene_.warnings, scene_.files);
   }
 
   const std::filesystem::path& folder_;
+  PhotometryFiles& photometry_;
   ChannelCount& channels_;
   Scene& scene_;
-  std::map<std::filesystem::path, std::shared_ptr<const PhotometricWeb>> read_before_;
 };
 
 }  // namespace
 
 void read_luminaire_entries(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                            ChannelCount& channels, Scene& scene) {
+                            PhotometryFiles& photometry, ChannelCount& channels, Scene& scene) {
   if (!root.has("luminaires")) return;
   const Json& entries = as_array(root.at("luminaires"), root.place("luminaires"), "luminaires");
   if (entries.size() > kMostLuminaires)
     throw InputError(text(root.place("luminaires"), " has more than ", kMostLuminaires, " entries"));
-  LuminaireReader reader(folder, channels, scene);
+  LuminaireReader reader(folder, photometry, channels, scene);
   std::size_t n = 0;
   for (const Json& entry : entries) {
     const JsonObject object(entry, text(file_name, ": luminaires[", n++, "]"),
@@ -159,12 +153,13 @@ void read_luminaire_entries(const JsonObject& root, const std::string& file_name
 }
 
 std::vector<FixtureRule> read_fixture_rules(const JsonObject& root, const std::string& file_name,
-                                            const std::filesystem::path& folder, ChannelCount& channels, Scene& scene) {
+                                            const std::filesystem::path& folder, PhotometryFiles& photometry,
+                                            ChannelCount& channels, Scene& scene) {
   std::vector<FixtureRule> rules;
   if (!root.has("fixtures")) return rules;
   const Json& entries = root.at("fixtures");
   if (!entries.is_object()) refuse_type(root.place("fixtures"), "an object of names and photometric files", entries);
-  LuminaireReader reader(folder, channels, scene);
+  LuminaireReader reader(folder, photometry, channels, scene);
   for (const auto& [pattern, value] : entries.items()) {
     const std::string place = text(file_name, ": fixtures '", quotable(pattern), "'");
     if (!value.is_string() && !value.is_object()) refuse_type(place, "the name of an .ies or .ldt file", value);

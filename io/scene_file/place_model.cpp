@@ -193,6 +193,11 @@ std::string NamesInUse::take(const std::string& name, const std::string& stem) {
   }
 }
 
+void note_files(Scene& scene, const std::filesystem::path& file, const Model& model) {
+  scene.files.push_back(file);
+  scene.files.insert(scene.files.end(), model.files.begin(), model.files.end());
+}
+
 void place_model(Scene& scene, ModelsInScene& before, const Model& model, const std::filesystem::path& file,
                  const Placement& placement, const MaterialOverride& by_scene_file, const FixtureLight& by_fixture) {
   const std::string name = short_name(file);

@@ -44,6 +44,9 @@ struct ModelsInScene {
   std::unordered_set<std::string> warnings;
 };
 
+/// Adds what a model was read from to the scene's files.
+void note_files(Scene& scene, const std::filesystem::path& file, const Model& model);
+
 /// The luminaire that the scene file names for a fixture, its position, axes and names in the scene's frame; nothing
 /// when it names none.
 using FixtureLight = std::function<std::optional<Luminaire>(const ModelFixture&)>;

@@ -78,7 +78,7 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
     auto model = read_before.find(one_name);
     if (model == read_before.end()) {
       model = read_before.emplace(one_name, read_model(model_file)).first;
-      scene.files.insert(scene.files.end(), model->second.files.begin(), model->second.files.end());
+      note_files(scene, model_file, model->second);
       take_texture_means(model->second, [&](const std::string& material) {
         return std::ranges::any_of(
             rules, [&](const MaterialRule& rule) { return matches(rule.pattern, clean_text(material)); });
@@ -88,7 +88,8 @@ void read_geometry(const JsonObject& root, const std::string& file_name, const s
       model->second.not_read.clear();
     }
     if (scene.polygons.face_count() + model->second.polygons.face_count() > kMaxFaces) {
-      throw InputError(text(object.where(), ": more than ", kMaxFaces, " faces in one scene"));
+      throw InputError(
+          text(object.where(), ": more than ", kMaxFaces, " faces in one scene; leave out what light does not need"));
     }
     place_model(
         scene, placed, model->second, model_file, placement,
@@ -128,7 +129,7 @@ SolverSettings read_settings(const JsonObject& object) {
   return settings;
 }
 
-/// Every file that the scene names. Its models and lamps may name more.
+/// Every file that the scene names by its keys. Its models and lamps name more; who reads those tells.
 void add_named_files(const Json& json, const std::filesystem::path& folder, std::set<std::filesystem::path>& files) {
   for (const auto& [key, value] : json.items()) {
     if (value.is_structured()) add_named_files(value, folder, files);
@@ -181,8 +182,9 @@ Scene read_scene_file(const std::filesystem::path& file) {
   std::vector<MaterialRule> rules;
   // What is quick to check comes first; models may take a while.
   if (root.has("materials")) rules = read_material_rules(root.at("materials"), name, channels, scene.warnings);
-  read_luminaire_entries(root, name, folder, channels, scene);
-  std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, channels, scene);
+  PhotometryFiles photometry;
+  read_luminaire_entries(root, name, folder, photometry, channels, scene);
+  std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, photometry, channels, scene);
   scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
     scene.settings = read_settings(JsonObject(

@@ -119,8 +119,8 @@ SensorSet grid_in(const NamedSpace& space, const JsonObject& object, SensorKind 
   object.at("spacing");
   const double spacing =
       *object.number("spacing", {.low = 0, .high = 1e12, .low_allowed = false, .advice = "it is in metres"});
-  const Vec3 normal = object.unit_vector("normal").value_or(kUp);
   const Vec3 u = wall_direction(space), v = cross(kUp, u);
+  const Vec3 normal = grid_normal(object, kind, u, v);
   double lower[2] = {1e300, 1e300}, upper[2] = {-1e300, -1e300};
   for (const std::uint32_t c : space.corner) {
     const Vec3& p = space.vertices[c];

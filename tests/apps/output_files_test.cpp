@@ -23,9 +23,12 @@ class SceneOfManyFiles : public testing::Test {
  protected:
   void SetUp() override {
     BoxScene{}.write(folder_);
-    folder_.write("room.mtl", "newmtl wall\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 1 plaster.png\nbump my bump.png\n");
+    folder_.write(
+        "room.mtl",
+        "newmtl wall\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 1 PLASTER.PNG\nMap_Ka back.png -clamp on\nbump my bump.png\n");
     folder_.write("room.obj", "mtllib room.mtl\n" + read_text(folder_ / "room.obj"));
-    folder_.write("plaster.png", "pixels"), folder_.write("my bump.png", "pixels");
+    folder_.write("plaster.png", "pixels"), folder_.write("back.png", "pixels"), folder_.write("my bump.png", "pixels");
+    folder_.write("pendant.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 50\n0 90\n0\n100 0\n");
     folder_.write("lamp.ies", "IESNA:LM-63-2002\nTILT=lamp.tlt\n1 1000 1 2 1 1 2 0 0 0\n1 1 50\n0 90\n0\n100 0\n");
     folder_.write("lamp.tlt", "1\n2\n0 90\n1 1\n");
     folder_.write("points.csv", "1,1,1,0,0,1\n");
@@ -35,14 +38,14 @@ class SceneOfManyFiles : public testing::Test {
     std::memcpy(triangle.data(), corner, 36), std::memcpy(triangle.data() + 36, index, 6);
     folder_.write("box.bin", triangle), folder_.write("box.png", "pixels");
     folder_.write("box.gltf", R"({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
-      "nodes": [{ "mesh": 0 }], "images": [{ "uri": "box.png" }], "buffers": [{ "uri": "box.bin", "byteLength": 42 }],
+      "nodes": [{ "mesh": 0 }], "images": [{ "uri": "textures/BOX.png" }], "buffers": [{ "uri": "box.bin", "byteLength": 42 }],
       "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
       "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": 36, "byteLength": 6 }],
       "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
                       "min": [0, 0, 0], "max": [1, 1, 0] },
                     { "bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR" }] })");
     scene_ = folder_.write("many.json", R"({ "geometry": [{ "file": "room.obj" }, { "file": "box.gltf" }],
-      "luminaires": [{ "file": "lamp.ies", "position": [2, 1, 2] }],
+      "luminaires": [{ "file": "lamp.ies", "position": [2, 1, 2] }], "fixtures": { "Pendant*": "pendant.ies" },
       "sensors": [{ "name": "points", "file": "points.csv" }] })");
     for (const auto& entry : fs::directory_iterator(folder_ / ".")) {
       const std::string name = entry.path().filename().string();
@@ -63,7 +66,7 @@ TEST_F(SceneOfManyFiles, CanBeSolved) {
   const TempFolder out;
   const ProgramRun run = run_program({"solve", scene_, "-o", out / "out.vtp", "--accuracy", "draft"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(files_.size(), 11u);
+  EXPECT_EQ(files_.size(), 13u);
 }
 
 TEST_F(SceneOfManyFiles, IsNeverWrittenOver) {

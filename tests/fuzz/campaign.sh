@@ -56,10 +56,14 @@ findings_of() { find "$work/findings/$1" -type f 2>/dev/null | wc -l; }
 sum() { cat "$memory"/*.stats | awk -v column="$1" '{ total += $column } END { print total + 0 }'; }
 
 for name in "${targets[@]}"; do rm -rf "${work:?}/findings/$name"; done
+done_so_far=0
 while :; do
   printf '%s\n' "${targets[@]}" | xargs -P "$jobs" -I{} bash -c 'fuzz_one {}'
   echo "$(sum 1) executions in $(sum 2) s of runs"
   [ "$(sum 1)" -lt "$wanted" ] || break
+  # Such a round would come again and again.
+  [ "$(sum 1)" -gt "$done_so_far" ] || { echo "no target runs any more; see $work/log" >&2; exit 1; }
+  done_so_far=$(sum 1)
   going=()  # a target that found something has ended
   for name in "${targets[@]}"; do [ "$(findings_of "$name")" -gt 0 ] || going+=("$name"); done
   [ ${#going[@]} -gt 0 ] || break

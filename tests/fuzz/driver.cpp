@@ -137,8 +137,8 @@ int main(int argc, char** argv) try {
     slowest = std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   const auto& tally = clerestory::fuzz_tally;
-  std::printf("%ld read, %ld refused (%ld of them broke the importer's process), slowest %.3f s\n", tally.read,
-              tally.refused, tally.broke_down, slowest);
+  std::printf("%ld read, %ld refused (%ld of them since a library broke down in its child process), slowest %.3f s\n",
+              tally.read, tally.refused, tally.broke_down, slowest);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s: not refused as input: %s; the input is in fuzz_work\n", argv[0], error.what());

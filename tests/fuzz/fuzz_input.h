@@ -15,7 +15,7 @@ namespace clerestory {
 
 struct FuzzTally {
   long read = 0, refused = 0,
-       broke_down = 0;  ///< broke_down: refused because the importer crashed or hung in its child
+       broke_down = 0;  ///< refused because a library crashed, hung or took too much in its child process
 };
 inline FuzzTally fuzz_tally;
 
@@ -50,7 +50,7 @@ void read_or_refuse(const Work& work) {
     ++fuzz_tally.refused;
     const std::string message = error.what();
     require(message.size() > 10 && message.find('\n') == message.npos, "the message is empty or has several lines");
-    if (message.find("the file is damaged or not") != message.npos) ++fuzz_tally.broke_down;
+    if (message.find(" importer ") != message.npos) ++fuzz_tally.broke_down;
   }
 }
 

@@ -2,16 +2,14 @@
 
 #include <cmath>
 
-#include "io/formats/model.h"
+#include "io/formats/mtl.h"
 #include "tests/fuzz/fuzz_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace clerestory;
   read_or_refuse([&] {
-    std::vector<ModelTexture> textures;
-    std::vector<std::string> warnings;
-    std::vector<std::filesystem::path> named;
-    for (const ModelMaterial& m : read_mtl(write_fuzz_input(data, size), textures, warnings, named)) {
+    Model model;
+    for (const ModelMaterial& m : MtlReader(model).read(write_fuzz_input(data, size))) {
       const Material& material = m.material;
       require(material.reflectance.min() >= 0 && std::isfinite(material.reflectance.max()),
               "a reflectance is negative or infinite");

@@ -79,8 +79,9 @@ TEST_F(Sensors, MalformedRowsAreNamedByTheirNumber) {
             "points.csv: row 2: 8 values; expected the 7 of the header");
   EXPECT_EQ(read("1,2,3,0,0,1,,\n").points.size(), 1u);  // as spreadsheets write it
   EXPECT_EQ(refused("1,2,3,0,0,0\n"), "points.csv: row 1: the normal is 0,0,0; it needs a direction, 0,0,1 is up");
-  EXPECT_EQ(refused("1,nan,3,0,0,1\n"), "points.csv: row 1: y = nan is outside [-1e12, 1e12]");
-  EXPECT_EQ(refused("1,2,3,0,0,inf\n"), "points.csv: row 1: nz = inf is outside [-1e12, 1e12]");
+  EXPECT_EQ(refused("1,nan,3,0,0,1\n"), "points.csv: row 1: y = nan is outside [-1e12, 1e12]; positions are in metres");
+  EXPECT_EQ(refused("1,2,3,0,0,inf\n"),
+            "points.csv: row 1: nz = inf is outside [-1e12, 1e12]; give a normal of length 1");
   EXPECT_EQ(refused("x,y,z\n"), "points.csv: row 1: no column 'nx' in the header; expected x,y,z,nx,ny,nz");
   EXPECT_EQ(refused("# nothing\n"), "points.csv: has no sensor; expected rows of x,y,z,nx,ny,nz");
   EXPECT_EQ(refused(""), folder_ / "points.csv" + ": the file is empty");

@@ -2,24 +2,15 @@
 
 import { idOf, idsOf, numberOf, textOf } from './ifc_file.mjs';
 import { axisPlacement, compose, mappingTarget, point, pointOf } from './placement.mjs';
+import { degreesPerAngle } from './units.mjs';
 
 const kDeepest = 20;
-
-/** Factor on the file's plane angles that makes them degrees. */
-function degreesOfAngle(file) {
-  for (const id of idsOf(file.get(file.all('IfcUnitAssignment', true)[0])?.Units)) {
-    const unit = file.get(id);
-    if (unit?.UnitType?.value !== 'PLANEANGLEUNIT') continue;
-    return file.classOf(unit) === 'IfcSIUnit' ? 180 / Math.PI : 1;
-  }
-  return 180 / Math.PI;
-}
 
 export class Lights {
   constructor(file, metres) {
     this.file = file;
     this.metres = metres;
-    this.degrees = degreesOfAngle(file);
+    this.degrees = degreesPerAngle(file);
     this.used = new Set();
     this.any = file.all('IfcLightSource').length > 0;
   }

@@ -4,6 +4,16 @@ import { idOf, idsOf, numberOf, textOf } from './ifc_file.mjs';
 
 const kDeepest = 10;
 
+/** The attribute of a set of materials, or a use of one, that says what it is made of. */
+const kMadeOf = {
+  IfcMaterialLayerSetUsage: 'ForLayerSet', IfcMaterialLayerSet: 'MaterialLayers',
+  IfcMaterialLayer: 'Material', IfcMaterialLayerWithOffsets: 'Material',
+  IfcMaterialProfileSetUsage: 'ForProfileSet', IfcMaterialProfileSetUsageTapering: 'ForProfileSet',
+  IfcMaterialProfileSet: 'MaterialProfiles', IfcMaterialProfile: 'Material', IfcMaterialProfileWithOffsets: 'Material',
+  IfcMaterialConstituentSet: 'MaterialConstituents', IfcMaterialConstituent: 'Material',
+  IfcMaterialList: 'Materials',
+};
+
 export class Materials {
   constructor(file) {
     this.file = file;
@@ -22,43 +32,14 @@ export class Materials {
     if (this.parts.has(id)) return this.parts.get(id);
     const line = this.file.get(id);
     const of = (target, part = '') =>
-      depth < kDeepest && target !== undefined
+      depth < kDeepest
         ? this.partsOf(target, depth + 1).map((m) => ({ ...m, part: m.part || part }))
         : [];
-    let parts = [];
-    switch (this.file.classOf(line)) {
-      case 'IfcMaterial':
-        parts = [{ id, name: textOf(line.Name), part: '' }];
-        break;
-      case 'IfcMaterialLayerSetUsage':
-        parts = of(idOf(line.ForLayerSet));
-        break;
-      case 'IfcMaterialProfileSetUsage':
-      case 'IfcMaterialProfileSetUsageTapering':
-        parts = of(idOf(line.ForProfileSet));
-        break;
-      case 'IfcMaterialList':
-        parts = idsOf(line.Materials).flatMap((m) => of(m));
-        break;
-      case 'IfcMaterialLayerSet':
-        parts = idsOf(line.MaterialLayers).flatMap((m) => of(m));
-        break;
-      case 'IfcMaterialProfileSet':
-        parts = idsOf(line.MaterialProfiles).flatMap((m) => of(m));
-        break;
-      case 'IfcMaterialConstituentSet':
-        parts = idsOf(line.MaterialConstituents).flatMap((m) => of(m));
-        break;
-      case 'IfcMaterialLayer':
-      case 'IfcMaterialLayerWithOffsets':
-      case 'IfcMaterialProfile':
-      case 'IfcMaterialProfileWithOffsets':
-        parts = of(idOf(line.Material));
-        break;
-      case 'IfcMaterialConstituent':
-        parts = of(idOf(line.Material), textOf(line.Name));
-        break;
-    }
+    const className = this.file.classOf(line);
+    const part = className === 'IfcMaterialConstituent' ? textOf(line.Name) : '';
+    const parts = className === 'IfcMaterial'
+      ? [{ id, name: textOf(line.Name), part: '' }]
+      : idsOf(line?.[kMadeOf[className]]).flatMap((m) => of(m, part));
     this.parts.set(id, parts);
     return parts;
   }

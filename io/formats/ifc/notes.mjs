@@ -1,14 +1,18 @@
 // What is worth a word, one line a kind: how many, and the first name.
 
+const kMostKinds = 500;  // of more, the others are counted together
+const kOther = `has notes of more than ${kMostKinds} kinds, of which these are left out`;
+
 export class Notes {
   constructor() {
     this.kinds = new Map();
   }
 
   add(what, name = '') {
-    const kind = this.kinds.get(what);
+    const key = this.kinds.has(what) || this.kinds.size < kMostKinds ? what : kOther;
+    const kind = this.kinds.get(key);
     if (kind) ++kind.count;
-    else if (this.kinds.size < 500) this.kinds.set(what, { what, count: 1, first: name });
+    else this.kinds.set(key, { what: key, count: 1, first: name });
   }
 
   list() {

@@ -65,7 +65,7 @@ class Reader {
     const model = api.OpenModel(this.bytes, settings);
     if (model < 0) {
       const schema = /FILE_SCHEMA\s*\(\s*\(\s*'([^']*)'/i.exec(Buffer.from(this.bytes.subarray(0, 65536)).toString('latin1'))?.[1];
-      refuse(schema === undefined ? 'is no IFC file: its header names no schema' : `has the schema '${schema}', which is not read; known are IFC2X3, IFC4 and IFC4X3`);
+      refuse(schema === undefined ? 'is no IFC file: its header names no schema; export it again' : `has the schema '${schema}', which is not read; known are IFC2X3, IFC4 and IFC4X3; export it as one of them`);
     }
     this.file = new IfcFile(this.WebIfc, api, model);
   }
@@ -85,7 +85,6 @@ class Reader {
     for (const id of products) await this.readProduct(id);
     for (const id of this.lights.unused()) this.leftOut.add('light source of no product', textOf(this.file.get(id)?.Name));
     return {
-      schema: this.file.api.GetModelSchema(this.file.model),
       surfaces: this.surfaces,
       materials: this.materials,
       spaces: this.spaces,
@@ -125,7 +124,8 @@ class Reader {
       return;
     }
     this.needsMeasure = isGlazed(className) || isFixture || mayBe || sources.length > 0;
-    const parts = meshes.map((mesh) => this.describe(mesh, id, type, shape, place));
+    const looks = this.looksOfProduct(shape);
+    const parts = meshes.map((mesh) => this.describe(mesh, id, type, looks, place));
     const surface = this.surfaces.length;
     if (parts.length > 0) {
       this.surfaces.push(name);
@@ -212,8 +212,7 @@ class Reader {
   }
 
   /** Look, material and size of a mesh, in the product's own frame. */
-  describe(mesh, id, type, shape, place) {
-    const looks = this.looksOfProduct(shape);
+  describe(mesh, id, type, looks, place) {
     const materials = this.buildingMaterials.of(id, type, mesh.geometry);
     let look = looks.get(mesh.geometry);
     if (!look && !looks.has(mesh.geometry)) {
@@ -348,5 +347,6 @@ async function main() {
 try {
   await main();
 } catch (error) {
-  refuse(`cannot be read: ${String(error?.message ?? error).split('\n')[0].slice(0, 160)}`);
+  if (/out of memory|cannot allocate/i.test(String(error?.message ?? error))) throw error;  // not the file's fault
+  refuse(`cannot be read: ${String(error?.message ?? error).split('\n')[0].slice(0, 160)}; try to export it again, as glTF or OBJ`);
 }

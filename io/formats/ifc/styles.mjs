@@ -2,6 +2,13 @@
 
 import { idOf, idsOf, numberOf, textOf } from './ifc_file.mjs';
 
+/** The attribute of a representation item that names what it is shown by. */
+const kShownBy = {
+  IfcBooleanResult: 'FirstOperand', IfcBooleanClippingResult: 'FirstOperand', IfcCsgSolid: 'TreeRootExpression',
+  IfcShellBasedSurfaceModel: 'SbsmBoundary', IfcFaceBasedSurfaceModel: 'FbsmFaces', IfcGeometricSet: 'Elements',
+  IfcFacetedBrep: 'Outer', IfcFacetedBrepWithVoids: 'Outer', IfcAdvancedBrep: 'Outer', IfcAdvancedBrepWithVoids: 'Outer',
+};
+
 const kDeepest = 50;  // operands of operands, maps of maps; more is a ring
 
 export class Styles {
@@ -110,35 +117,9 @@ export class Styles {
         inner.push(of);
       }
     };
-    switch (this.file.classOf(line)) {
-      case 'IfcMappedItem': {
-        const map = this.file.get(idOf(line.MappingSource));
-        for (const id of idsOf(this.file.get(idOf(map?.MappedRepresentation))?.Items)) look(id);
-        break;
-      }
-      case 'IfcBooleanResult':
-      case 'IfcBooleanClippingResult':
-        look(idOf(line.FirstOperand));
-        break;
-      case 'IfcCsgSolid':
-        look(idOf(line.TreeRootExpression));
-        break;
-      case 'IfcShellBasedSurfaceModel':
-        for (const id of idsOf(line.SbsmBoundary)) look(id);
-        break;
-      case 'IfcFaceBasedSurfaceModel':
-        for (const id of idsOf(line.FbsmFaces)) look(id);
-        break;
-      case 'IfcFacetedBrep':
-      case 'IfcFacetedBrepWithVoids':
-      case 'IfcAdvancedBrep':
-      case 'IfcAdvancedBrepWithVoids':
-        look(idOf(line.Outer));
-        break;
-      case 'IfcGeometricSet':
-        for (const id of idsOf(line.Elements)) look(id);
-        break;
-    }
+    const className = this.file.classOf(line);
+    const map = className === 'IfcMappedItem' ? this.file.get(idOf(line.MappingSource)) : undefined;
+    for (const id of idsOf(map ? this.file.get(idOf(map.MappedRepresentation))?.Items : line[kShownBy[className]])) look(id);
     looks.set(item, own ?? inner.find((of) => of));
     return looks;
   }

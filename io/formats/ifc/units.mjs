@@ -7,21 +7,28 @@ const kPrefix = {
   DECI: 1e-1, CENTI: 1e-2, MILLI: 1e-3, MICRO: 1e-6, NANO: 1e-9, PICO: 1e-12, FEMTO: 1e-15, ATTO: 1e-18,
 };
 
-function metresOfUnit(file, id, depth = 0) {
+function inSI(file, id, depth = 0) {
   const unit = file.get(id);
   if (file.classOf(unit) === 'IfcSIUnit') return kPrefix[unit.Prefix?.value] ?? 1;
   const measure = file.get(idOf(unit?.ConversionFactor));
   const value = numberOf(measure?.ValueComponent);
-  return value > 0 && depth < 5 ? value * metresOfUnit(file, idOf(measure.UnitComponent), depth + 1) : 1;
+  return value > 0 && depth < 5 ? value * inSI(file, idOf(measure.UnitComponent), depth + 1) : 1;
 }
 
-/** Metres of the project's unit of length; 1 where it has none. */
-export function metresPerUnit(file) {
+/** The project's unit of this type in the SI's; 1 where it has none. */
+function projectUnit(file, type) {
   const project = file.get(file.all('IfcProject')[0]);
   const assignment = idOf(project?.UnitsInContext) ?? file.all('IfcUnitAssignment')[0];
-  for (const id of idsOf(file.get(assignment)?.Units))
-    if (file.get(id)?.UnitType?.value === 'LENGTHUNIT') return metresOfUnit(file, id);
-  return 1;
+  const id = idsOf(file.get(assignment)?.Units).find((unit) => file.get(unit)?.UnitType?.value === type);
+  return id === undefined ? 1 : inSI(file, id);
+}
+
+/** Metres of the project's unit of length. */
+export const metresPerUnit = (file) => projectUnit(file, 'LENGTHUNIT');
+/** Degrees of its unit of angles; a degree of few digits, 0.01745 rad, is one all the same. */
+export function degreesPerAngle(file) {
+  const degrees = (projectUnit(file, 'PLANEANGLEUNIT') * 180) / Math.PI;
+  return Math.abs(degrees - 1) < 1e-3 ? 1 : degrees;
 }
 
 /** Degrees from +y to true north, clockwise seen from above; undefined when the file does not say. */

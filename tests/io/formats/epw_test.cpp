@@ -65,13 +65,13 @@ TEST_F(Epw, IsReadWithWindowsLineEndsAndAByteOrderMark) {
 
 TEST_F(Epw, RefusalsNameLineAndReason) {
   EXPECT_EQ(refused(with_cell(1, 0, "hello")),
-            "city.epw:1: begins with 'hello' and not with LOCATION; it is no EPW weather file");
+            "city.epw:1: begins with 'hello' and not with LOCATION; it is no EPW weather file. Name one");
   EXPECT_EQ(refused(with_cell(1, 6, "north")), "city.epw:1: the latitude = 'north' is not a number");
   EXPECT_EQ(refused(with_cell(1, 6, "91")), "city.epw:1: the latitude = 91 is outside [-90, 90]");
   EXPECT_EQ(refused(with_cell(1, 8, "nan")), "city.epw:1: the time zone = nan is outside [-14, 14]");
   EXPECT_EQ(refused(with_cell(8, 2, "4")), "city.epw:8: 4 records an hour; only hourly files are read");
   EXPECT_EQ(refused(with_cell(8, 0, "1995")),
-            "city.epw:8: begins with '1995' and not with DATA PERIODS; the header has 8 lines");
+            "city.epw:8: begins with '1995' and not with DATA PERIODS; the header has 8 lines. Download it again");
 }
 
 TEST_F(Epw, CommasBetweenQuotationMarksAndWithoutThemMoveNothing) {

@@ -193,5 +193,22 @@ TEST_F(Expansion, AMaterialLibraryIsReadOnceHoweverOftenItIsNamed) {
   EXPECT_NE(all_warnings(other).find("b.obj: 19950 more warnings are left out"), std::string::npos);
 }
 
+TEST_F(Expansion, FilesThatAreNotThereAreLookedForInTimeThatGoesByTheirNumber) {
+  for (std::size_t i = 0; i < 2'000; ++i) folder_.write("other" + number(i), "x");
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m7\nf 1 2 3\n";
+  folder_.write("lib.mtl", joined(
+                               100'000,
+                               [](std::size_t i) {
+                                 const std::string n = number(i);
+                                 return "newmtl m" + n + "\nKd .2 .2 .2\nmap_Kd " + (i % 2 ? "./" : "") + "no" + n +
+                                        ".png";
+                               },
+                               "\n"));
+  const Scene scene = read_scene(folder_.write("a.obj", "mtllib lib.mtl\n" + square));
+  EXPECT_NE(all_warnings(scene).find("'m7' (no7.png is not there)"), std::string::npos);
+  const auto missing = [](std::size_t i) { return "mtllib no" + number(i) + ".mtl"; };
+  read_scene(folder_.write("b.obj", joined(20'000, missing, "\n") + "\n" + square));
+}
+
 }  // namespace
 }  // namespace clerestory

@@ -218,7 +218,8 @@ TEST_F(Gltf, BrokenFilesNameTheElement) {
             "a.gltf: nodes[0] has two parents, or holds itself; nodes must form a tree");
   EXPECT_EQ(refused(gltf(R"({ "mesh": 0, "scale": [1, 2] })")), "a.gltf: nodes[0].scale must be 3 numbers");
   EXPECT_EQ(refused(gltf(R"({ "mesh": 0, "scale": [1e200, 1, 1] })")),
-            "a.gltf: vertex 1 (from 0) of 'square' is at (1e+200, 0, 0), outside [-1e12, 1e12]");
+            "a.gltf: vertex 1 (from 0) of 'square' is at (1e+200, 0, 0), outside [-1e12, 1e12]; is the file damaged, "
+            "or drawn far from its origin?");
   EXPECT_EQ(refused(R"({ "asset": { "version": "1.0" } })"), "a.gltf: is glTF version '1.0'; only version 2 is read");
   EXPECT_EQ(refused("{}"), "a.gltf: is JSON, but not glTF: it has no \"asset\"");
   EXPECT_TRUE(refused("{ \"asset\": ").starts_with("a.gltf:1:"));
@@ -234,7 +235,8 @@ TEST_F(Gltf, BrokenFilesNameTheElement) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(not_a_number.data() + 12, &nan, 4);
   EXPECT_EQ(refused(gltf(square, "", "data:;base64," + base64(not_a_number))),
-            "a.gltf: vertex 1 (from 0) of 'square' is at (nan, nan, nan), outside [-1e12, 1e12]");
+            "a.gltf: vertex 1 (from 0) of 'square' is at (nan, nan, nan), outside [-1e12, 1e12]; is the file damaged, "
+            "or drawn far from its origin?");
 }
 
 TEST_F(Gltf, CutOffBinariesSaySo) {

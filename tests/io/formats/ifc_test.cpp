@@ -6,6 +6,7 @@
 #include <functional>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "solver/lights/luminaire.h"
 #include "solver/model/units.h"
@@ -259,6 +260,12 @@ TEST_F(ReadIfc, SpacesAreNamedVolumesThatGridsFill) {
       "sensors": [{ "space": "Hall*", "spacing": 1 }] })"))
                 .find("matches no space; the models have 'R1', 'R2'"),
             std::string::npos);
+  for (const char* kind : {R"("horizontal")", R"("camera", "camera": [9, 9, 9])"})
+    EXPECT_NE(refusal(folder_.write("s.json", R"({ "geometry": [{ "file": "a.ifc" }], "sensors": [{ "space": "R1",
+        "spacing": 1, "normal": [0, 1, 0], "kind": )" +
+                                                  std::string(kind) + " }] }"))
+                  .find("s.json: sensors[0].normal does not go with \"kind\""),
+              std::string::npos);
 }
 
 /// A lamp of 1000 lm at (2, 2, 2.8) in a housing, with intensities 0..90 degrees from the nadir.
@@ -366,6 +373,25 @@ TEST_F(ReadIfc, AByteOrderMarkIsSkippedAndUtf16IsNamed) {
   for (const char c : text) wide += std::string{c, '\0'};
   EXPECT_EQ(refusal(folder_.write("wide.ifc", wide)),
             "wide.ifc: is UTF-16 text; IFC files are plain text (ISO 10303-21). Save it as UTF-8");
+}
+
+TEST_F(ReadIfc, TooLittleAddressSpaceForNodeIsNoFaultOfTheFile) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers take more address space than any limit";
+#endif
+  IfcText ifc;
+  ifc.room();
+  const std::string file = folder_.write("a.ifc", ifc.str());
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  rlimit tight = before;
+  tight.rlim_cur = rlim_t{4} << 30;
+  setrlimit(RLIMIT_AS, &tight);
+  const std::string said = refusal(file);
+  setrlimit(RLIMIT_AS, &before);
+  EXPECT_EQ(said,
+            "a.ifc: cannot be read: the .ifc importer, Node.js, takes some 16384 MiB of address space, and 4096 MiB "
+            "are allowed (ulimit -v); allow more");
 }
 
 TEST_F(ReadIfc, NamesAreDecodedAndUnique) {

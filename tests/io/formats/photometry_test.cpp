@@ -228,8 +228,12 @@ TEST(Photometry, AMetersOffsetIsZeroAndTextBehindTheDataIsLeftOutBothWithAWarnin
   EXPECT_EQ(parse(ies(head + "100 40 -0.1\n"), &said).candela, (std::vector<float>{100, 40, 0}));
   EXPECT_EQ(said, std::vector<std::string>{"lamp.ies: 1 intensity is negative, down to -0.1 cd; 0 is taken"});
   EXPECT_EQ(parse(ies(head + "100 -0 -4\n"), &said).candela, (std::vector<float>{100, 0, 0}));
-  EXPECT_EQ(refusal(ies(head + "100\n40 -6\n")), "lamp.ies:8: candela at V = 90, H = 0 = -6 is negative");
-  EXPECT_EQ(refusal(ies(head + "-1 -1 -1\n")), "lamp.ies:7: candela at V = 0, H = 0 = -1 is negative");
+  EXPECT_EQ(refusal(ies(head + "100\n40 -6\n")),
+            "lamp.ies:8: candela at V = 90, H = 0 = -6 is negative, more than a meter's offset is; correct it, or take "
+            "another file");
+  EXPECT_EQ(refusal(ies(head + "-1 -1 -1\n")),
+            "lamp.ies:7: candela at V = 0, H = 0 = -1 is negative, more than a meter's offset is; correct it, or take "
+            "another file");
   for (const char* text : {"END\n", "[OTHER] measured in 2019 at 25 C\n", "# 3 4 5\n"}) {
     EXPECT_EQ(parse(ies(kEvenly + text), &said).candela, parse(ies(kEvenly)).candela);
     ASSERT_EQ(said.size(), 1u);
@@ -270,7 +274,8 @@ TEST(Photometry, RefusalsNameLineValueAndWhatIsAllowed) {
   EXPECT_EQ(refusal(ies("1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n1 nan 1\n")),
             "lamp.ies:7: candela at V = 45, H = 0 = nan is out of every range");
   EXPECT_EQ(refusal(ies("1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n1 -2 1\n")),
-            "lamp.ies:7: candela at V = 45, H = 0 = -2 is negative");
+            "lamp.ies:7: candela at V = 45, H = 0 = -2 is negative, more than a meter's offset is; correct it, or take "
+            "another file");
   EXPECT_EQ(refusal(ies("1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n1 1\n")),
             "lamp.ies:7: the file ends before candela at V = 90, H = 0");
   EXPECT_EQ(refusal(ies(kEvenly + "5 6\n")),

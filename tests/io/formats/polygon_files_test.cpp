@@ -74,7 +74,8 @@ TEST_F(PolygonFiles, PlyThatPromisesTooMuchIsRefusedAtOnce) {
   EXPECT_EQ(refused("a.ply", "not a ply\n"), "a.ply:1: does not start with 'ply'; is it damaged, or another format?");
   EXPECT_EQ(refused("a.ply", "ply\nformat ascii 1.0\n"),
             "a.ply:2: the header ends without 'end_header'; is the file cut off?");
-  EXPECT_EQ(refused("a.ply", "ply\nformat ascii 1.0\nend_header\n"), "a.ply: has no faces; nothing to light");
+  EXPECT_EQ(refused("a.ply", "ply\nformat ascii 1.0\nend_header\n"),
+            "a.ply: has no faces; nothing to light. Export its surfaces as polygons or triangles");
 }
 
 TEST_F(PolygonFiles, StlTextKeepsTheNamesOfItsSolids) {
@@ -88,7 +89,8 @@ TEST_F(PolygonFiles, StlTextKeepsTheNamesOfItsSolids) {
   EXPECT_EQ(refused("a.stl", solid.substr(0, solid.size() - 14)),
             "a.stl:9: the file ends before 'endsolid'; is it cut off?");
   EXPECT_EQ(refused("a.stl", "solid x\nvertex 0 0 y\n"), "a.stl:2: 'y' is not a number");
-  EXPECT_EQ(refused("a.stl", "solid x\nendsolid x\n"), "a.stl: has no faces; nothing to light");
+  EXPECT_EQ(refused("a.stl", "solid x\nendsolid x\n"),
+            "a.stl: has no faces; nothing to light. Export its surfaces as polygons or triangles");
   EXPECT_NE(refused("a.stl", "garbage").find("neither text that starts with 'solid' nor a binary STL"),
             std::string::npos);
 }

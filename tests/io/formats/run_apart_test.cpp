@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace clerestory {
@@ -58,6 +59,25 @@ TEST(RunApart, MemoryBeyondTheLimitIsNotGiven) {
                 },
                 {.memory_bytes = 100 << 20}),
             "ran out of memory");
+}
+
+TEST(RunApart, MemoryThatThisProcessIsNotAllowedIsNoFaultOfTheWork) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers take more address space than any limit";
+#endif
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  rlimit tight = before;
+  tight.rlim_cur = rlim_t{2} << 30;
+  setrlimit(RLIMIT_AS, &tight);
+  const auto eat = []() -> std::string {
+    std::vector<char> much(std::size_t{1} << 32, 'x');
+    return {much[1 << 20]};
+  };
+  EXPECT_THROW(run_apart(eat, {}), std::bad_alloc);
+  EXPECT_EQ(failure([]() -> std::string { std::abort(); }),
+            "crashed, which the limit of 2048 MiB on memory (ulimit -v) may cause");
+  setrlimit(RLIMIT_AS, &before);
 }
 
 }  // namespace

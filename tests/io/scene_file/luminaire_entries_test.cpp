@@ -82,9 +82,9 @@ TEST_F(Luminaires, RefusalsNameTheEntryAndTheKey) {
             "lamps.");
   EXPECT_EQ(refused(R"({ "file": "lamp.ies" })"), "s.json: luminaires[0].position is missing");
   folder_.write("dark.ies", "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n0 0\n");
-  EXPECT_EQ(
-      refused(R"({ "file": "dark.ies", "position": [0, 0, 3], "luminous_flux": 100 })"),
-      "s.json: luminaires[0].file 'dark.ies' gives no light; its flux cannot be scaled to the one the scene asks for");
+  EXPECT_EQ(refused(R"({ "file": "dark.ies", "position": [0, 0, 3], "luminous_flux": 100 })"),
+            "s.json: luminaires[0].file 'dark.ies' gives no light; its flux cannot be scaled to the one the scene asks "
+            "for; leave that out, or name another file");
 }
 
 }  // namespace

@@ -434,7 +434,8 @@ TEST_F(SceneFile, KeysGivenTwiceAreRefused) {
 }
 
 TEST_F(SceneFile, NestingBombsAndSensorBombsAreRefusedAtOnce) {
-  EXPECT_EQ(refusal(folder_.write("s.json", std::string(1'000'000, '['))), "s.json: is nested deeper than 32 levels");
+  EXPECT_EQ(refusal(folder_.write("s.json", std::string(1'000'000, '['))),
+            "s.json: is nested deeper than 32 levels; is it damaged, or another file?");
   EXPECT_EQ(refusal_with(R"("sensors": [ { "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 1e-9 } ])"),
             "s.json: sensors[0].spacing = 1e-09 makes 1e+09 x 1e+09 points; at most 10000000 in one scene");
   EXPECT_EQ(refusal_with(R"("sensors": [ { "kind": "cylindrical", "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0],

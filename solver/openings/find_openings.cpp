@@ -25,6 +25,7 @@ constexpr double kIndoors = 0.2;                   ///< most of the rays in that
 constexpr double kWideOpen = 0.5;                  ///< and those that do so mostly are preferred
 constexpr double kDarker = 0.1;                    ///< of what one side of a slit sees: the other sees less
 constexpr double kDarkerByFew = 0.5;               ///< the same, to sift
+constexpr double kBeside = 16;                     ///< widths of a slit: what is nearer is lit by it
 constexpr int kWalks = 8;                          ///< for each of those rays, to judge how bright a side is
 constexpr std::size_t kFewLuminaires = 16;         ///< that are asked for it
 constexpr std::size_t kMostSlits = 200;            ///< that are judged by walks, the largest
@@ -109,19 +110,26 @@ class Judge {
     std::reverse(o.corners.begin(), o.corners.end());
   }
 
-  /// Mean radiance of what is seen on one side, by light that has met four surfaces at most.
+  /// Mean radiance of what is seen on one side, by light that has met four surfaces at most. What is right beside the
+  /// slit is lit through it from the other side, and tells nothing of this one.
   double brightness_from(const LightArea& o, const Vec3& side, int count, std::uint64_t key) const {
+    const double beside = kBeside * o.area / (2 * o.radius);
     double sum = 0;
-    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count * kWalks); ++k)
-      sum += walk(ray_through(o, side, key, k, rays_.lift()), stream_key(key, k));
-    return sum / (count * kWalks);
+    int away = 0;
+    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count * kWalks); ++k) {
+      const Ray ray = ray_through(o, side, key, k, rays_.lift());
+      const Hit hit = rays_.first_hit(patches_, ray);
+      if (!hit.escaped() && hit.first < beside) continue;
+      sum += walk(ray, hit, stream_key(key, k));
+      ++away;
+    }
+    return away > 0 ? sum / away : 0;
   }
-  /// Radiance that comes back along a ray, luminous mean, by one way over surfaces.
-  double walk(Ray ray, std::uint64_t key) const {
+  /// Radiance that comes back along a ray that meets `hit`, luminous mean, by one way over surfaces.
+  double walk(Ray ray, Hit hit, std::uint64_t key) const {
     constexpr std::uint32_t kMostBounces = 4;
     Spectrum L(0.0), share(1.0);
     for (std::uint32_t bounce = 0;; ++bounce) {
-      const Hit hit = rays_.first_hit(patches_, ray);
       share *= hit.transmittance;
       if (hit.escaped()) return luminous_mean(L + share * sky_(hit.direction(ray)));
       if (!hit.patch.valid() || bounce == kMostBounces) return luminous_mean(L);
@@ -130,6 +138,7 @@ class Judge {
       share *= patches_.rho[hit.patch];
       const auto u = sobol4(bounce, key);
       ray = {p, cosine_direction(Frame(n), u[0], u[1])};
+      hit = rays_.first_hit(patches_, ray);
     }
   }
   Spectrum delta_light(const Vec3& p, const Vec3& n) const {

@@ -10,6 +10,7 @@
 #include <OpenMesh/Core/Utils/PropertyManager.hh>
 
 #include "meshing/patch_mesh.h"
+#include "solver/model/box.h"
 
 namespace clerestory {
 namespace {
@@ -75,6 +76,11 @@ struct FacetAtPoint {
   double angle;        ///< between them
 
   Vec3 to_centroid() const { return (first + second) / 3; }
+  /// The lower one over the two edges [m].
+  double height() const {
+    const double longer = std::sqrt(std::max(dot(first, first), dot(second, second)));
+    return longer > 0 ? length(cross(first, second)) / longer : 0;
+  }
   bool holds(const Vec3& d, const Vec3& n) const {
     return dot(cross(first, d), n) >= 0 && dot(cross(d, second), n) >= 0 && dot(d, first + second) > 0;
   }
@@ -86,14 +92,17 @@ struct Facing {
   std::vector<FacetAtPoint> in_plane;  ///< those in the first one's plane
   double weight = 0;                   ///< angle at the point
 
-  /// Into the surface: to the mean of the facets' centroids where that is on one of them. Where the surface goes most
-  /// of the way around a corner of something else, the mean may be inside of that; then to the widest facet's centroid.
-  Vec3 inward() const {
+  /// A little into the surface: towards the mean of the facets' centroids where that is on one of them. Where the
+  /// surface goes most of the way around a corner of something else, the mean may be inside of that; then towards the
+  /// widest facet's centroid. least_way: share of it.
+  Vec3 inward(double least_way, const VertexLightmap& map) const {
     Vec3 mean;
     for (const FacetAtPoint& f : in_plane) mean += f.to_centroid();
     mean = mean / static_cast<double>(in_plane.size());
-    if (std::ranges::any_of(in_plane, [&](const FacetAtPoint& f) { return f.holds(mean, normal); })) return mean;
-    return std::ranges::max_element(in_plane, {}, &FacetAtPoint::angle)->to_centroid();
+    const auto on = std::ranges::find_if(in_plane, [&](const FacetAtPoint& f) { return f.holds(mean, normal); });
+    const auto widest = std::ranges::max_element(in_plane, {}, &FacetAtPoint::angle);
+    const FacetAtPoint& facet = on != in_plane.end() ? *on : *widest;
+    return (on != in_plane.end() ? mean : facet.to_centroid()) * std::max(least_way, map.way_inside(facet.height()));
   }
 };
 
@@ -126,7 +135,7 @@ void place_samples(const PatchSet& patches, std::span<const Corner> around, std:
   double sum = 0;
   for (const Facing& f : facings) sum += f.weight;
   for (const Facing& f : facings) {
-    map.sample_position.push_back(map.position.back() + f.inward() * way);
+    map.sample_position.push_back(map.position.back() + f.inward(way, map));
     map.sample_normal.push_back(f.normal);
     map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
   }
@@ -223,6 +232,12 @@ void place_points(const PatchSet& patches, double crease_deg, VertexLightmap& ma
   }
 }
 
+double diagonal_of(const PatchSet& patches) {
+  Box box;
+  for (const Vec3& v : patches.vertices) box.add(v);
+  return patches.vertices.empty() ? 0 : length(box.upper - box.lower);
+}
+
 }  // namespace
 
 VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
@@ -230,6 +245,7 @@ VertexLightmap make_lightmap(const PatchSet& patches, double crease_deg) {
     throw std::logic_error("make_lightmap: halved patches have ElementMesh::leaf_lightmap()");
   VertexLightmap map;
   map.neighbour = find_neighbours(patches);
+  map.off_edges = VertexLightmap::kOffEdges * diagonal_of(patches);
   place_points(patches, crease_deg, map);
   map.E = Field(map.position.size(), patches.channels);
   return map;

@@ -348,9 +348,11 @@ std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, 
   points_.position.push_back(place);
   points_.patch_of_point.push_back(patch);
   ends_.push_back({here.point[0], here.point[1]});
+  const Vec3 along = points_.position[here.point[0]] - points_.position[here.point[1]];
   const auto sample = [&](const Parting& facet, double weight) {
     const Vec3 to_centroid = (facet.apex - place) / 3;
-    points_.sample_position.push_back(place + to_centroid * way);
+    const double height = length(cross(facet.apex - place, along)) / length(along);
+    points_.sample_position.push_back(place + to_centroid * std::max(way, points_.way_inside(height)));
     points_.sample_normal.push_back(patches_.normal[elements_[facet.element].patch]);
     points_.sample_weight.push_back(weight);
   };

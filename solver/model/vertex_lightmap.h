@@ -1,6 +1,7 @@
 #pragma once
 // Where the solution is shown: patches as triangles with vertices shared where the surface is smooth.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -26,12 +27,20 @@ struct VertexLightmap {
 
   /// Facets around a point that face as one: cosine of 8 degrees, as turning a facet so far changes E by little.
   static constexpr double kAlike = 0.99;
-  /// Share of the way to a facet's centroid that a sample is off its point: far enough from edges for single precision
-  /// rays, too near to be seen.
+  /// Share of the way to a facet's centroid that a sample is off its point at least: far enough from edges for single
+  /// precision rays, too near to be seen.
   static constexpr double kWayToCentroid = 2e-3;
   /// The same where something ends a little off the surface: right under it a slit's light is as bright as outdoors, on
   /// a strip as narrow as the slit, and would be drawn out over all of the elements there.
   static constexpr double kWayFromOutline = 0.25;
+  /// What samples keep away from edges, where their facet has the room: four times what single precision loses at the
+  /// rim of the model [m].
+  double off_edges = 0;
+  static constexpr double kOffEdges = 2e-7;  ///< of the model's diagonal
+  /// Share of the way to the centroid of a facet of that height over its edges at the point [m].
+  double way_inside(double height) const {
+    return height > 0 ? std::clamp(3 * off_edges / height, kWayToCentroid, kWayFromOutline) : kWayToCentroid;
+  }
   // Where irradiance is gathered, S samples: one for each direction that the facets around a point face, so one for a
   // point of a flat surface. Point p has samples sample_begin[p] .. sample_begin[p + 1] - 1, of weights that sum to 1.
   std::vector<std::uint32_t> sample_begin;  ///< P + 1

@@ -152,6 +152,10 @@ struct RayScene::Impl {
     return &mirrors[mirror_of_triangle[t]];
   }
 
+  bool lands_tight(const Hit& hit, const Ray& ray) const {
+    return !tight.is_clear(hit.triangle) && (tight.is_tight(hit.triangle) || tight.contains(hit.position(ray)));
+  }
+
   /// Of one ray up to the first surface, be it a mirror.
   Hit one_leg(const PatchSet& patches, const Ray& ray) const {
     if (tight.contains(ray.origin)) return fine_leg(patches, ray);
@@ -162,8 +166,7 @@ struct RayScene::Impl {
     hit.distance = hit.first = double{r.ray.tfar};
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       hit.triangle = TriangleId{opaque.of_primitive[r.hit.primID]};
-      if (tight.any() && (tight.is_tight(hit.triangle) || tight.contains(hit.position(ray))))
-        return fine_leg(patches, ray);
+      if (lands_tight(hit, ray)) return fine_leg(patches, ray);
       const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
       hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{r.hit.u}, double{r.hit.v});
     }
@@ -306,7 +309,7 @@ Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
 }
 
 void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const {
-  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   alignas(64) int valid[16];
   RTCRayHit16 packet;
   for (std::size_t first = 0; first < rays.size(); first += 16) {
@@ -323,6 +326,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     rtcIntersect16(valid, impl_->opaque.handle, &c, &packet);
+    bool starts_tight = false;
     for (std::size_t k = 0; k < count; ++k) {
       Hit& hit = hits[first + k];
       hit = Hit{};
@@ -330,8 +334,9 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
         hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
       const Ray& sent = rays[first + k];
-      if (has_tight_places() && (impl_->tight.is_tight(hit.triangle) || is_tight(sent.origin) ||
-                                 (!hit.escaped() && is_tight(hit.position(sent))))) {
+      if (has_tight_places() && (k == 0 || sent.origin != rays[first + k - 1].origin))
+        starts_tight = is_tight(sent.origin);
+      if (starts_tight || (!hit.escaped() && impl_->lands_tight(hit, sent))) {
         hit = impl_->fine_leg(patches, rays[first + k]);
         if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], lift_share_, hit);
         continue;
@@ -391,10 +396,18 @@ std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) 
   rtcOccluded16(valid, impl_->opaque.handle, &c, &packet);
   unsigned visible = 0;
   for (unsigned k = 0; k < 16; ++k) visible |= (packet.tfar[k] >= 0 ? 1u : 0u) << k;
-  if (has_tight_places())
-    for (unsigned k = 0; k < 16; ++k)
-      if (((active >> k) & 1) && (is_tight(s.from[k]) || is_tight(s.to[k])))
-        visible = (visible & ~(1u << k)) | (impl_->fine_visible(s.from[k], s.to[k]) ? 1u << k : 0u);
+  if (has_tight_places()) {
+    const Vec3 *from = nullptr, *to = nullptr;  // many segments have an end in common
+    bool starts_tight = false, ends_tight = false;
+    for (unsigned k = 0; k < 16; ++k) {
+      if (!((active >> k) & 1)) continue;
+      if (!from || s.from[k] != *from) starts_tight = is_tight(s.from[k]);
+      if (!to || s.to[k] != *to) ends_tight = is_tight(s.to[k]);
+      from = &s.from[k], to = &s.to[k];
+      if (starts_tight || ends_tight)
+        visible = (visible & ~(1u << k)) | (impl_->fine_visible(*from, *to) ? 1u << k : 0u);
+    }
+  }
   return static_cast<std::uint16_t>(visible & active);
 }
 

@@ -11,9 +11,11 @@ namespace {
 
 constexpr double kReach = 2;        // lifts: what is further apart than that a lifted end cannot pass
 constexpr double kBesideEdge = 10;  // reaches: from there on surfaces that meet at atan(1 / 10) are far enough apart
-constexpr double kShareOfHeight = 6e-4;  // of a triangle over its edge: vertices are evaluated that near to it
-constexpr double kRounding = 0.05;       // reaches: what float moves a point sideways
-constexpr double kSamePlane = 1e-3;      // reaches: two coordinates on the grid of meshing, and what a sliver leans
+// Vertices are evaluated that near to an edge (VertexLightmap::way_inside), by the height of a triangle over it.
+constexpr double kShareOfHeight = 6e-4, kMostOfHeight = 0.08;
+constexpr double kKeptOff = 0.2;     // reaches
+constexpr double kRounding = 0.05;   // reaches: what float moves a point sideways
+constexpr double kSamePlane = 1e-3;  // reaches: two coordinates on the grid of meshing, and what a sliver leans
 
 double distance(const Vec3& p, const std::array<Vec3, 3>& triangle) { return length(p - nearest_point(triangle, p)); }
 
@@ -27,7 +29,9 @@ class Prism {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 edge = corner[(k + 1) % 3] - corner[k];
       inward_[k] = normalized(cross(normal_, edge));
-      inset_[k] = std::min(kBesideEdge * reach, kShareOfHeight * twice_area / length(edge)) - kRounding * reach;
+      const double height = twice_area / length(edge);
+      const double kept = std::max(kShareOfHeight * height, std::min(kKeptOff * reach, kMostOfHeight * height));
+      inset_[k] = std::min(kBesideEdge * reach, kept) - kRounding * reach;
     }
   }
   bool has_area() const { return length(normal_) > 0.5; }
@@ -89,27 +93,31 @@ TightPlaces::TightPlaces(const PatchSet& patches, double lift) : reach_(kReach *
   };
   const auto box_of = [&](std::size_t t) { return Box::around(corners_of(t)).grown(reach_); };
   const BoxTree tree(count, box_of);
-  std::vector<std::uint8_t> tight(count);
+  std::vector<Kind> tight(count, Kind::clear);
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t t = tree.order()[k];
       const Prism prism(corners_of(t), reach_);
       if (!prism.has_area()) continue;
       tree.visit(box_of(t), [&](std::uint32_t other) {
-        if (other != t && !tight[t] && prism.meets(corners_of(other))) tight[t] = 1;
+        if (other != t && tight[t] == Kind::clear && prism.meets(corners_of(other))) tight[t] = Kind::tight;
       });
     }
   });
   std::vector<Box> boxes;
   for (std::size_t t = 0; t < count; ++t)
-    if (tight[t]) {
+    if (tight[t] == Kind::tight) {
       triangles_.push_back(corners_of(t));
       boxes.push_back(box_of(t));
     }
   if (triangles_.empty()) return;
-  tight_ = std::move(tight);
   cells_.lay(triangles_, reach_);
   tree_.emplace(triangles_.size(), StoredBoxes{std::move(boxes)});
+  parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      if (tight[t] == Kind::clear) tree_->visit(box_of(t), [&](std::uint32_t) { tight[t] = Kind::beside; });
+  });
+  tight_ = std::move(tight);
 }
 
 void TightPlaces::Cells::lay(const std::vector<std::array<Vec3, 3>>& triangles, double reach) {

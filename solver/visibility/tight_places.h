@@ -23,7 +23,9 @@ class TightPlaces {
   TightPlaces(const PatchSet& patches, double lift);
 
   bool any() const { return tree_.has_value(); }
-  bool is_tight(TriangleId t) const { return t.valid() && !tight_.empty() && tight_[t]; }
+  bool is_tight(TriangleId t) const { return t.valid() && !tight_.empty() && tight_[t] == Kind::tight; }
+  /// Whether no place on triangle t lies within two lifts of a tight one; of most triangles.
+  bool is_clear(TriangleId t) const { return tight_.empty() || tight_[t] == Kind::clear; }
   /// Whether p lies within two lifts of a tight triangle.
   bool contains(const Vec3& p) const;
 
@@ -45,7 +47,8 @@ class TightPlaces {
   };
 
   double reach_ = 0;
-  std::vector<std::uint8_t> tight_;             ///< T; empty: none is
+  enum class Kind : std::uint8_t { clear, beside, tight };
+  std::vector<Kind> tight_;                     ///< T; empty: all are clear
   std::vector<std::array<Vec3, 3>> triangles_;  ///< the tight ones
   std::optional<BoxTree<StoredBoxes>> tree_;    ///< of their boxes, grown by the reach
   Cells cells_;

@@ -54,7 +54,8 @@ class View {
         if (!found.empty()) found[k] = RowEntry::of_sky(pack_direction(direction), kPi * hit.transmittance);
       } else if (hit.patch.valid()) {
         Spectrum back = light_.sampler.glow()[hit.patch];
-        double share = 1;
+        double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
+        back *= share;
         if (owner == kNobody && bright_rays_ > 0) {
           share = balance_heuristic(density[k],
                                     bright_rays_ * light_.sampler.density(hit, p_, frame_.n, directions[k], true));
@@ -64,6 +65,12 @@ class View {
         if (!found.empty()) found[k] = RowEntry::of_patch(hit.patch, share * hit.transmittance);
       }
     }
+  }
+
+  double slit_gain(std::uint32_t number, const Vec3& direction, double distance) const {
+    if (light_.slit_gains.gain.empty()) return 1;
+    const LightArea& slit = light_.problem.lights.openings[number];
+    return light_.slit_gains.of(number, slit, distance - way_out(slit, p_, direction));
   }
 
   /// Of a ray that meets `patch`, if any, and the first surface at `distance`.
@@ -130,6 +137,25 @@ SkyInView sky_in_view(const Illumination& light, const Vec3& p, const Frame& fra
   }
   if (brightest > 1.5 * sum / (count / 4)) return SkyInView::edge;  // around the sun, or in an image
   return sky ? SkyInView::all : SkyInView::none;
+}
+
+/// The openings over p, but none where much of the sky is in view.
+std::vector<std::uint32_t> openings_worth_looking(const Illumination& light, const Vec3& p, const Frame& frame,
+                                                  const GatherPattern& pattern, unsigned long long& rays) {
+  const std::vector<LightArea>& openings = light.problem.lights.openings;
+  std::vector<std::uint32_t> over = areas_over(openings, p, frame.n, kMostOpenings, 0);
+  if (over.empty()) return over;
+  std::array<Ray, 16> pilots;
+  std::array<Hit, 16> met;
+  const int step = pattern.bundle().budget().strata() / 16;
+  for (int k = 0; k < 16; ++k) {
+    const auto& d = pattern.bundle().pilot(k * step);
+    pilots[static_cast<std::size_t>(k)] = {p, frame.to_world(d[0], d[1], d[2])};
+  }
+  light.problem.rays.first_hits(light.problem.patches, pilots, met);
+  rays += 16;
+  if (sees_much_sky(met)) over.clear();
+  return over;
 }
 
 std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {
@@ -380,7 +406,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
     return true;
   };
   const std::vector<LightArea>& openings = light.problem.lights.openings;
-  for (const std::uint32_t k : areas_over(openings, p, n, kMostOpenings, 0)) {
+  for (const std::uint32_t k : openings_worth_looking(light, p, frame, pattern, rays)) {
     owners.openings.push_back(k);
     if (!look_at(openings[k], k, plan.openings, plan.opening_plans)) owners.openings.pop_back();
   }
@@ -437,7 +463,7 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
   // Where it is all but dark, what differs from a plan's mean may leave less than nothing.
   at.E = {std::max(0.0, at.E[0]), std::max(0.0, at.E[1]), std::max(0.0, at.E[2])};
   if (!light.problem.lights.empty()) {
-    at.delta_light = light.sampler.delta_light(p, n, pattern.quality().sun_rays, pattern.sun_key(), row);
+    at.delta_light = light.sampler.delta_light(p, n, {.sun_rays = pattern.quality().sun_rays}, pattern.sun_key(), row);
     at.E += at.delta_light;
   }
   CLERESTORY_ASSERT(all_finite(at.E), ==, true);

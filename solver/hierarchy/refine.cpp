@@ -17,6 +17,7 @@ namespace clerestory {
 namespace {
 
 constexpr std::size_t kParts = 4;
+constexpr int kRaysOfLuminaire = 4;  // to a luminaire near by, whose light differs between parts by more than they miss
 constexpr int kDirections = 16, kPairs = 16,
               kPoints = 8;        // of each part: one packet each, and half of one for delta light
 constexpr int kMostHalvings = 4;  // of an element in one call
@@ -115,7 +116,8 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
     for (int k = 0; k < kPoints; ++k) {
       const auto v = sobol4(static_cast<std::uint32_t>(k), place);
       for (std::size_t s = 0; s < kParts; ++s)
-        value[s] = luminous_mean(light.sampler.delta_light(lifted(point_on_triangle(parts[s], v[0], v[1])), normal, 1,
+        value[s] = luminous_mean(light.sampler.delta_light(lifted(point_on_triangle(parts[s], v[0], v[1])), normal,
+                                                           {.opening_rays = kRaysOfLuminaire},
                                                            mix_bits(place + static_cast<std::uint64_t>(k))));
       delta.add(value);
     }

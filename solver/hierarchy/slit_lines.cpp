@@ -19,7 +19,8 @@ constexpr std::size_t kMostSlits = 8;        ///< that one receiver has by lines
 
 }  // namespace
 
-SlitLines::SlitLines(const Problem& problem, std::uint64_t seed) {
+SlitLines::SlitLines(const Illumination& light, std::uint64_t seed) {
+  const Problem& problem = light.problem;
   const std::vector<LightArea>& openings = problem.lights.openings;
   for (std::uint32_t k = 0; k < openings.size(); ++k)
     if (is_slit(openings[k])) slits_.push_back(openings[k]), number_.push_back(k);
@@ -36,7 +37,8 @@ SlitLines::SlitLines(const Problem& problem, std::uint64_t seed) {
         if (!receiver.patch.valid()) continue;
         const Hit source = problem.rays.first_hit(problem.patches, {in.origin, -in.direction});
         if (!source.patch.valid()) continue;
-        const double passes = luminous_mean(receiver.transmittance) * luminous_mean(source.transmittance);
+        const double passes = luminous_mean(receiver.transmittance) * luminous_mean(source.transmittance) *
+                              light.slit_gains.of(number_[s], slit, source.first);
         found[s].push_back({receiver.patch.value, number_[s], source.patch.value,
                             static_cast<float>(slit.area * passes / count), receiver.position(in),
                             -receiver.direction(in), receiver.distance + source.distance});

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/hierarchy/receiver_area.h"
-#include "solver/illumination/problem.h"
+#include "solver/illumination/illumination.h"
 
 namespace clerestory {
 
@@ -25,7 +25,8 @@ struct SlitLine {
 class SlitLines {
  public:
   SlitLines() = default;
-  SlitLines(const Problem& problem, std::uint64_t seed);
+  /// light  its slit gains tell how bright it is where lines end.
+  SlitLines(const Illumination& light, std::uint64_t seed);
 
   /// Slits whose light the receiver has by these lines, in the order of their numbers: what its own rays find through
   /// them is not to count.

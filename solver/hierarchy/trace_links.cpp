@@ -146,7 +146,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   Transport transport;
   transport.arrives.resize(n), transport.escapes.resize(n);
   const bool merges = B.size() == n;
-  const SlitLines slits(light.problem, options.seed);
+  const SlitLines slits(light, options.seed);
   const Given given{{light, tree, direct, slits, options.sky_views, merges && options.uniform > 0},
                     options,
                     net_of(options),

@@ -10,6 +10,7 @@
 #include "solver/lights/luminaire.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
+#include "solver/paths/find_slit_gains.h"
 
 namespace clerestory {
 namespace {
@@ -50,7 +51,7 @@ class Gatherer {
  public:
   Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options,
            const RowLight* layers)
-      : light_(gather_illumination(problem, B)),
+      : light_(gather_illumination_by_slits(problem, B, options.seed)),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),

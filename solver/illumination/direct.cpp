@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "solver/illumination/delta_light.h"
+#include "solver/illumination/sky_through_openings.h"
 #include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/near_planes.h"
@@ -14,66 +15,10 @@
 #include "solver/model/units.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/packed_direction.h"
-#include "solver/sampling/polygon_view.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 namespace {
-
-constexpr std::size_t kMostOpenings = 4;  ///< over a patch
-constexpr int kRaysOfOpening = 32;        ///< through each opening that matters
-
-struct Through {
-  Spectrum E{0.0};   ///< mean irradiance [W/m2]
-  bool any = false;  ///< whether any ray left the scene
-};
-
-/// Light of the sky through some openings, from points all over the patch. looked_at: those that any of a few rays left
-/// by, whatever the sky there; light through the others is left to bundles.
-Spectrum through_openings(const Illumination& light, std::size_t patch, const DirectOptions& options,
-                          std::vector<std::uint32_t>& looked_at, LightRow* row) {
-  constexpr int kPilotRays = 8;
-  const Problem& problem = light.problem;
-  const std::span<const LightArea> openings = problem.lights.sky_openings();
-  const Vec3 n = problem.patches.normal[patch];
-  const auto corners = problem.patches.corner_positions(PatchId{patch});
-  std::vector<std::uint32_t> over =
-      areas_over(openings, (corners[0] + corners[1] + corners[2]) / 3, n, kMostOpenings, 0);
-  for (const Vec3& corner : corners)  // all of a patch may see of it is from one corner
-    for (const std::uint32_t k : areas_over(openings, corner, n, 1, 0)) over.push_back(k);
-  std::sort(over.begin(), over.end());
-  over.erase(std::unique(over.begin(), over.end()), over.end());
-
-  const auto look = [&](std::uint32_t number, std::uint64_t key, int count, LightRow* keep) {
-    Through found;
-    for (int k = 0; k < count; ++k) {
-      const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-      const Vec3 p = problem.rays.off_surface(point_on_triangle(corners, u[0], u[1]), n);
-      const PolygonView polygon(p, n, openings[number].triangles, openings[number].corners);
-      if (!(polygon.solid_angle() > 0)) continue;
-      const auto [d, solid_angle] = polygon.look(u[2], u[3]);
-      const Hit hit = problem.rays.first_hit(problem.patches, {p, d});
-      if (!hit.escaped() || first_way_out(openings, looked_at, p, d, hit.first) != number) continue;
-      const std::uint32_t sky = pack_direction(hit.direction({p, d}));
-      const Spectrum weight = hit.transmittance * (std::max(0.0, dot(d, n)) * solid_angle);
-      found.E += light.sky(unpack_direction(sky)) * weight;
-      found.any = true;
-      if (keep) keep->push_back(RowEntry::of_sky(sky, weight / count));
-    }
-    found.E *= 1.0 / count;
-    return found;
-  };
-  const std::uint64_t key = stream_key(options.seed, kOpeningRaysOfPatch, patch);
-  std::vector<std::uint32_t> seen;
-  for (const std::uint32_t k : over) {
-    looked_at = {k};
-    if (look(k, stream_key(key, k + 1), kPilotRays, nullptr).any) seen.push_back(k);
-  }
-  looked_at = seen;
-  Spectrum E(0.0);
-  for (const std::uint32_t k : looked_at) E += look(k, mix_bits(stream_key(key, k)), kRaysOfOpening, row).E;
-  return E;
-}
 
 Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOptions& options,
                   std::span<const std::uint32_t> looked_at, LightRow* row) {
@@ -160,7 +105,7 @@ void keep(const Problem& problem, const std::vector<LightRow>& row_of_patch, Dir
 }  // namespace
 
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor,
-                         DirectRows* rows) {
+                         DirectRows* rows, const PatchesOfRound* round) {
   const Problem& problem = light.problem;
   const Lights& lights = problem.lights;
   const std::size_t n = problem.patches.patch_count();
@@ -185,7 +130,17 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     const DeltaIrradiance delta = delta_light_of_patch(problem, beams, i, spend, row);
     Spectrum sky = delta.suns;
     if (has_openings) {
-      const Spectrum through = through_openings(light, i, spend, looked_at[i], row);
+      const std::uint32_t same = round && round->before && !row ? round->number[i] : PatchesOfRound::kNew;
+      Spectrum through;
+      if (same != PatchesOfRound::kNew) {
+        const auto seen = round->before->openings.of(same);
+        looked_at[i].assign(seen.begin(), seen.end());
+        through = round->before->E_openings[same];
+      } else {
+        const std::uint64_t key = round ? stream_key(round->seed, kOpeningRaysOfPatch, round->name[i])
+                                        : stream_key(spend.seed, kOpeningRaysOfPatch, i);
+        through = sky_through_openings(light, i, key, looked_at[i], row);
+      }
       direct.E_openings.set(i, through);
       if (spend.sky_rays > 0) sky += through;
     }

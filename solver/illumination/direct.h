@@ -34,6 +34,15 @@ struct DirectLight {
   unsigned long long rays = 0;
 };
 
+/// Patches of which many were there before: of them the sky through openings need not be looked for again.
+struct PatchesOfRound {
+  static constexpr std::uint32_t kNew = 0xffffffff;
+  std::vector<std::uint32_t> name;      ///< by patch: it keeps it, and with it the rays through openings
+  std::uint64_t seed = 1;               ///< of these rays, in all rounds
+  const DirectLight* before = nullptr;  ///< what was found then; null: nothing
+  std::vector<std::uint32_t> number;    ///< by patch: of the same patch then, or kNew
+};
+
 /// A luminaire or sun of whose light rows tell.
 struct DirectSource {
   Spectrum flux;         ///< a luminaire's; of a sun what it brings in, as of the scene's sky [W]
@@ -57,8 +66,9 @@ struct DirectRows {
 ///
 /// rows  where it is not null: filled with what the rays found, 16 bytes for each luminaire and sun that reaches a
 ///       patch, and for each ray of the patch that looks for the sky.
+/// round  null, or what may be taken over where there are no rows, with the same bits
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {},
-                         DirectRows* rows = nullptr);
+                         DirectRows* rows = nullptr, const PatchesOfRound* round = nullptr);
 
 /// Direct light of layers, N x lanes [W/m2].
 struct DirectLayers {

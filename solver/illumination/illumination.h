@@ -7,6 +7,7 @@
 #include "solver/lights/sky.h"
 #include "solver/openings/opening_sampler.h"
 #include "solver/openings/openings.h"
+#include "solver/openings/slit_gains.h"
 
 namespace clerestory {
 
@@ -16,6 +17,7 @@ struct Illumination {
   SkyRadiance sky;
   OpeningSampler openings;     ///< that the sky is seen through
   OpeningSampler slits;        ///< that rays meet by chance only, and surfaces are seen through
+  SlitGains slit_gains{};      ///< for a gather; see find_slit_gains()
   BrightAreas bright_areas{};  ///< for a gather; see look_at_bright_areas()
 
   explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}

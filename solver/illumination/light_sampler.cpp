@@ -178,7 +178,8 @@ double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const
   return density(hit.patch, p, n, hit.distance, -dot(problem_.patches.normal[hit.patch], d), bright_patches_only);
 }
 
-Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key, LightRow* row) const {
+Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffort& effort, std::uint64_t key,
+                                   LightRow* row) const {
   const RayScene& rays = problem_.rays;
   struct Load {
     Spectrum irradiance;
@@ -205,7 +206,7 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, s
   // In the tree's order luminaires that share a packet are neighbours.
   for (const std::uint32_t number : luminaires_.order()) {
     const PlacedLuminaire& luminaire = problem_.lights.luminaires[number];
-    const int count = opening_rays(luminaire, p);
+    const int count = std::min(effort.opening_rays, opening_rays(luminaire, p));
     if (count == 1) {
       look(shadow_segment(luminaire, luminaire.position, p), open_irradiance(luminaire, p, n), number,
            luminaire.mirror);
@@ -220,10 +221,11 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, int sun_rays, s
   shadows.trace();
   for (std::size_t number = 0; number < problem_.lights.suns.size(); ++number) {
     const PlacedSun& sun = problem_.lights.suns[number];
-    for (int k = 0; k < sun_rays; ++k) {
+    for (int k = 0; k < effort.sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
-      look({p, p + d * (4 * rays.diameter()), false}, sun.normal_irradiance * (std::max(dot(n, d), 0.0) / sun_rays),
+      look({p, p + d * (4 * rays.diameter()), false},
+           sun.normal_irradiance * (std::max(dot(n, d), 0.0) / effort.sun_rays),
            problem_.lights.luminaires.size() + number, sun.mirror);
     }
     shadows.trace();

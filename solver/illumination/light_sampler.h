@@ -29,6 +29,11 @@ struct LightSample {
   double weight = 0;                 ///< of a bright patch: irradiance = glow * weight [1]
 };
 
+struct DeltaEffort {
+  int sun_rays = 1;        ///< to each sun
+  int opening_rays = 256;  ///< to each luminaire, at most; 1, 4, 16, 64 or 256
+};
+
 class LightSampler {
  public:
   /// glow  N x channels, what the patches send out of themselves: M for paths, which find reflected light on their way;
@@ -52,9 +57,10 @@ class LightSampler {
   /// The same where a ray from p along d (unit) ends; 0 when that is no bright patch that shadow rays look for.
   double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const;
 
-  /// Irradiance at p of luminaires and of the sun: a shadow ray to each luminaire, more to openings that are near,
-  /// sun_rays to each sun. row: null, or where to add what comes of each.
-  Spectrum delta_light(const Vec3& p, const Vec3& n, int sun_rays, std::uint64_t key, LightRow* row = nullptr) const;
+  /// Irradiance at p of luminaires and of the sun: a shadow ray to each luminaire, more to openings that are near.
+  /// row: null, or where to add what comes of each.
+  Spectrum delta_light(const Vec3& p, const Vec3& n, const DeltaEffort& effort, std::uint64_t key,
+                       LightRow* row = nullptr) const;
 
  private:
   struct Shares {

@@ -19,6 +19,7 @@
 #include "solver/illumination/near_luminaires.h"
 #include "solver/methods/progressive.h"
 #include "solver/model/units.h"
+#include "solver/paths/find_slit_gains.h"
 #include "solver/spaces/closure.h"
 
 namespace clerestory {
@@ -68,6 +69,7 @@ bool merges(std::size_t leaves, const LinkOptions& links) {
 /// What one round hands to the next: the light on the leaves as they were.
 struct Round {
   HierarchicalSolution result;
+  DirectLight direct;
   std::vector<std::uint32_t> element;  ///< of the mesh, by leaf
   std::vector<std::uint32_t> space;    ///< by leaf
   std::size_t spaces = 0;
@@ -156,6 +158,16 @@ std::string round_line(const char* what, const Solution& s, std::size_t leaves, 
   return line;
 }
 
+/// Of each element of `now`, its place among those of `then`.
+std::vector<std::uint32_t> numbers_of_the_same(std::span<const std::uint32_t> then,
+                                               std::span<const std::uint32_t> now) {
+  std::vector<std::uint32_t> place(then.empty() ? 0 : *std::ranges::max_element(then) + 1, PatchesOfRound::kNew);
+  for (std::size_t i = 0; i < then.size(); ++i) place[then[i]] = static_cast<std::uint32_t>(i);
+  std::vector<std::uint32_t> numbers;
+  for (const std::uint32_t e : now) numbers.push_back(e < place.size() ? place[e] : PatchesOfRound::kNew);
+  return numbers;
+}
+
 /// links -> gather -> push-pull on the leaves as they are. before: the round that came earlier, if any; keep: null, or
 /// where its transport goes.
 Round solve_round(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options, Quality quality,
@@ -170,8 +182,10 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
 
   if (options.oracle == Oracle::bf) quality.direct.sky_rays = options.bundle_rays;
   quality.direct.rough_first = false;  // a round that is stopped is not returned
-  const DirectLight direct =
-      direct_light(Illumination(problem), quality.direct, monitor, keep ? &keep->direct : nullptr);
+  PatchesOfRound same{round.element, options.seed, nullptr, {}};
+  if (before) same.before = &before->direct, same.number = numbers_of_the_same(before->element, round.element);
+  round.direct = direct_light(Illumination(problem), quality.direct, monitor, keep ? &keep->direct : nullptr, &same);
+  const DirectLight& direct = round.direct;
   if (monitor.should_stop()) return round;
   Field guess, glow;
   if (before) {
@@ -183,7 +197,8 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
     for (std::size_t i = 0; i < n; ++i) glow.add(i, leaves.scattered(direct.E, i));
   }
   ElementTree tree = build_tree(leaves, before ? guess : glow);
-  const Illumination light(problem, glow);
+  Illumination light(problem, glow);
+  if (before) light.slit_gains = find_slit_gains(problem, guess, options.seed);
   const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;

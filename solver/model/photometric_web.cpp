@@ -92,7 +92,7 @@ double candela_towards(const PhotometricWeb& web, const Vec3& d) {
   switch (web.type) {
     case WebType::C:
       // atan2 and not acos: acos loses half its digits near straight down.
-      v = std::atan2(std::hypot(d.x, d.y), -d.z) / kDegree;
+      v = std::atan2(std::sqrt(d.x * d.x + d.y * d.y), -d.z) / kDegree;
       if (web.horizontal.size() > 1) h = std::atan2(d.y, d.x) / kDegree;
       if (h < 0) h += 360;
       break;

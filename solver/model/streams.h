@@ -52,6 +52,7 @@ enum Stream : std::uint64_t {
   kBrightPairs = 0x92,
   kBrightPairPilot = 0x93,
   kSlitLines = 0x94,
+  kSlitGains = 0x95,
   kVariationProbe = 0xa1,
   kBfPairs = 0xb1,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.

@@ -37,6 +37,11 @@ std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const
   return kNoOpening;
 }
 
+bool sees_much_sky(std::span<const Hit> hits) {
+  constexpr double kMuch = 0.3;
+  return static_cast<double>(std::ranges::count_if(hits, &Hit::escaped)) > kMuch * static_cast<double>(hits.size());
+}
+
 double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n) {
   const Vec3 d = opening.centre - p;
   const double height = -dot(d, opening.normal), above = dot(d, n) + opening.radius;
@@ -64,6 +69,16 @@ std::vector<LightArea> slits_among(std::span<const LightArea> openings) {
   return slits;
 }
 
+Vec3 point_of(const LightArea& opening, double u, double v) {
+  double left = u * opening.area;
+  for (const auto& triangle : opening.triangles) {
+    const double area = length(cross(triangle[1] - triangle[0], triangle[2] - triangle[0])) / 2;
+    if (left < area) return point_on_triangle(triangle, left / area, v);
+    left -= area;
+  }
+  return point_on_triangle(opening.triangles.back(), 0.5, v);  // by rounding
+}
+
 Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {
   const auto u = sobol4(k, key);
   double left = sobol4(k, key + 1)[0] * opening.area;
@@ -80,16 +95,38 @@ Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, s
   return {p + (opening.centre - p) * inset + side * lift, cosine_direction(Frame(side), u[2], u[3])};
 }
 
+namespace {
+
+/// Form factor, from afar by the opening's centre.
+double about_form_factor(const LightArea& opening, const Vec3& p, const Vec3& n) {
+  constexpr double kAfar = 4;  // radii: 2 % off at most where all of it is in view
+  const Vec3 d = opening.centre - p;
+  const double r2 = dot(d, d), above = dot(d, n), height = -dot(d, opening.normal);
+  if (r2 < kAfar * kAfar * opening.radius * opening.radius || std::abs(above) < opening.radius)
+    return form_factor(opening, p, n);
+  return above > 0 && height > 0 ? opening.area * above * height / (std::numbers::pi * r2 * r2) : 0;
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
                                       std::size_t most, double least_of_best) {
   constexpr double kNothing = 1e-9;
+  // Form factors cost more than all the rest: those that may give most come first, until none can give as much.
+  thread_local std::vector<std::pair<double, std::uint32_t>> may_give;
+  may_give.clear();
+  for (std::uint32_t k = 0; k < openings.size(); ++k)
+    if (const double bound = most_it_gives(openings[k], p, n); bound > kNothing)
+      may_give.emplace_back(bound * openings[k].brightness, k);
+  std::make_heap(may_give.begin(), may_give.end());
   std::vector<std::pair<double, std::uint32_t>> found;  // by light, the most first
-  for (std::uint32_t k = 0; k < openings.size(); ++k) {
-    const double L = openings[k].brightness, bound = most_it_gives(openings[k], p, n);
-    if (!(bound > kNothing) || (found.size() == most && bound * L <= -found.back().first)) continue;
-    const double F = form_factor(openings[k], p, n);
+  while (!may_give.empty() && (found.size() < most || may_give.front().first > -found.back().first)) {
+    std::pop_heap(may_give.begin(), may_give.end());
+    const std::uint32_t k = may_give.back().second;
+    may_give.pop_back();
+    const double F = about_form_factor(openings[k], p, n), gives = F * openings[k].brightness;
     if (!(F > kNothing)) continue;
-    found.insert(std::upper_bound(found.begin(), found.end(), std::pair{-F * L, k}), {-F * L, k});
+    found.insert(std::upper_bound(found.begin(), found.end(), std::pair{-gives, k}), {-gives, k});
     if (found.size() > most) found.pop_back();
   }
   std::vector<std::uint32_t> numbers;

@@ -21,6 +21,10 @@ inline constexpr std::uint32_t kNoOpening = 0xffffffff;
 std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
                             const Vec3& d, double distance);
 
+/// Whether so many of some cosine-distributed rays escape that rays anywhere know the sky well enough, as they do out
+/// of doors: openings are for where they seldom meet it.
+bool sees_much_sky(std::span<const Hit> hits);
+
 /// Upper bound of the form factor [1] from a surface element at p with normal n to the opening; 0 from outside of it.
 double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n);
 
@@ -31,6 +35,9 @@ double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n);
 /// the order of their numbers; none that gives less than the share least_of_best of the first.
 std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
                                       std::size_t most, double least_of_best);
+
+/// Point of the opening, even over its area.
+Vec3 point_of(const LightArea& opening, double u, double v);
 
 /// Ray k of a sequence through points all over the opening, cosine-distributed around `side`, which is its normal or
 /// the opposite.

@@ -96,7 +96,7 @@ Spectrum from_sun_patch(const Problem& problem, const SunPatch& patch, const Vec
 Spectrum trace_path(const Illumination& light, const SunPatch& patch, Vec3 p, Vec3 n, const std::array<double, 2>& u,
                     RandomStream& random) {
   const Problem& problem = light.problem;
-  Spectrum E = light.sampler.delta_light(p, n, 1, random.bits()), throughput(1.0);
+  Spectrum E = light.sampler.delta_light(p, n, {}, random.bits()), throughput(1.0);
   for (bool first = true;; first = false) {
     E += throughput * from_sun_patch(problem, patch, p, n, random);
     const double a = first ? u[0] : random.uniform(), b = first ? u[1] : random.uniform();

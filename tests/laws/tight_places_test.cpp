@@ -234,5 +234,35 @@ TEST(TightPlaces, ASensorSeesTheSideOfATableThatItIsOn) {
   for (std::size_t k = heights.size(); k < solved.sensors_lux.size(); ++k) EXPECT_EQ(solved.sensors_lux[k], 0);
 }
 
+TEST(Slits, UnderASlabThatOverhangsLetInWhatATracerSays) {
+  // Walls of 4 x 4 m that end so far below a slab at 3 m; slab and floor go on for 0.5 m all round. Uniform sky of
+  // 10,000 lx, black ground. Values in the middle of the room, beside the slit and low at a wall [lx]: a tracer of
+  // lines in double, which starts at the slit; standard errors below 3, 3 and 10 %. Six seeds of this program differ by
+  // 10, 10 and 17 %.
+  struct Case {
+    double gap;
+    std::array<double, 3> lux;
+  };
+  for (const Case& c :
+       {Case{1e-4, {0.00354, 0.148, 0.00151}}, Case{1e-3, {0.0385, 1.58, 0.0191}}, Case{1e-2, {0.566, 22.4, 0.252}}}) {
+    SCOPED_TRACE(testing::Message() << "gap " << c.gap << " m");
+    const double top = 3 - c.gap;
+    ModelText model;
+    model.object("slabs", "wall")
+        .quad({Vec3{-0.5, -0.5, 0}, {4.5, -0.5, 0}, {4.5, 4.5, 0}, {-0.5, 4.5, 0}})
+        .quad({Vec3{-0.5, -0.5, 3}, {4.5, -0.5, 3}, {4.5, 4.5, 3}, {-0.5, 4.5, 3}});
+    model.object("walls", "wall")
+        .quad({Vec3{0, 0, 0}, {4, 0, 0}, {4, 0, top}, {0, 0, top}})
+        .quad({Vec3{0, 4, 0}, {4, 4, 0}, {4, 4, top}, {0, 4, top}})
+        .quad({Vec3{0, 0, 0}, {0, 4, 0}, {0, 4, top}, {0, 0, top}})
+        .quad({Vec3{4, 0, 0}, {4, 4, 0}, {4, 4, top}, {4, 0, top}});
+    const Solved solved = solve(model, R"("materials": {"*": {"reflectance": 0.5}},
+                  "sky": {"model": "uniform", "horizontal_illuminance": 10000, "ground_reflectance": 0})",
+                                point({2, 2, 0.85}) + point({0.02, 3.98, 2.98}) + point({3.98, 0.02, 1.5}));
+    ASSERT_EQ(solved.sensors_lux.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(solved.sensors_lux[k] / c.lux[k], 1, 0.5) << k;
+  }
+}
+
 }  // namespace
 }  // namespace clerestory

@@ -63,7 +63,7 @@ TEST(Mirror, ShowsTheImageOfALampWhereTheWayMeetsItAndIsFree) {
     const Lights lights = place_lights(lamps, patches, rays);
     EXPECT_EQ(lights.luminaires.size(), 2u);
     const Problem problem{patches, rays, lights};
-    return LightSampler(problem, patches.M).delta_light(p, {0, 0, -1}, 1, 1)[0];
+    return LightSampler(problem, patches.M).delta_light(p, {0, 0, -1}, {}, 1)[0];
   };
   const auto from = [](const Vec3& lamp, const Vec3& p) {
     const Vec3 d = lamp - p;

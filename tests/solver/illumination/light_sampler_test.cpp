@@ -322,7 +322,7 @@ TEST(LightSampler, SmallLightsAreTheSumOfWhatIsNotInShadow) {
   double exact = 20 * lights.suns[0].direction.z;
   for (const Luminaire& lamp : lights.luminaires)
     if (lamp.position.y < 20) exact += open_irradiance(lamp, at.p, at.n)[0];
-  EXPECT_NEAR(lit.sampler.delta_light(at.p, at.n, 64, 1)[0], exact, 1e-5 * exact);  // the sun is a disc
+  EXPECT_NEAR(lit.sampler.delta_light(at.p, at.n, {.sun_rays = 64}, 1)[0], exact, 1e-5 * exact);  // the sun is a disc
 }
 
 TEST(LightSampler, BrightPatchesAreThoseOverFourTimesTheMedianOfTheArea) {

@@ -101,10 +101,10 @@ TEST(WebLuminaire, NearItsOpeningALambertianPanelIsTheAreaThatItIs) {
       const Vec3 p{x, 0.05, z - h};
       const double exact = kPi * point_to_polygon(p, up, panel);
       // 0.05 % from what is linear between 2.5 degrees, the rest from 4 to 256 points of the opening.
-      EXPECT_NEAR(lit.sampler.delta_light(p, up, 1, 7)[0], exact, (h > 0.1 ? 0.002 : 0.005) * exact) << x << " " << h;
+      EXPECT_NEAR(lit.sampler.delta_light(p, up, {}, 7)[0], exact, (h > 0.1 ? 0.002 : 0.005) * exact) << x << " " << h;
     }
     for (const double h : {0.05, 0.01, 1e-3, 1e-6})  // touching: dim at worst, never dazzled
-      EXPECT_LT(lit.sampler.delta_light({x, 0.05, z - h}, up, 1, 7)[0], 3 * kPi) << x << " " << h;
+      EXPECT_LT(lit.sampler.delta_light({x, 0.05, z - h}, up, {}, 7)[0], 3 * kPi) << x << " " << h;
   }
 }
 
@@ -133,7 +133,7 @@ TEST(WebLuminaire, OneShadowRayOfAPathFindsOnAverageWhatAllRaysOfAGatherFind) {
         const double mean = sum / kRays, error = std::sqrt((sum2 / kRays - mean * mean) / kRays);
         // A penumbra is known to a sixteenth of a lamp that gives up to a third of the light.
         const double steps = wall ? 0.02 : 0.001;
-        EXPECT_NEAR(lit.sampler.delta_light(p, n, 1, 7)[0], mean, 4 * error + steps * mean) << wall;
+        EXPECT_NEAR(lit.sampler.delta_light(p, n, {}, 7)[0], mean, 4 * error + steps * mean) << wall;
       }
     }
   }
@@ -184,10 +184,10 @@ TEST(WebLuminaire, InTheVeryPlaneOfTheCeilingLightsTheRoomAndNotTheRoomAbove) {
   Lights lights;
   lights.luminaires.push_back(lamp_at({2, 2, 3}, web_of(cosine, {0.6, 0.6, 0}), 1));
   const Lit lit(b.build(), lights);
-  EXPECT_NEAR(lit.sampler.delta_light({2, 2, lit.rays.lift()}, {0, 0, 1}, 1, 1)[0], 1 / 9.0,
+  EXPECT_NEAR(lit.sampler.delta_light({2, 2, lit.rays.lift()}, {0, 0, 1}, {}, 1)[0], 1 / 9.0,
               0.02 / 9);  // 0.6 m at 3 m: 1.3 % less than a point
-  EXPECT_GT(lit.sampler.delta_light({3.9, 2, 2.5}, {-1, 0, 0}, 1, 1)[0], 0);
-  EXPECT_EQ(lit.sampler.delta_light({2, 2, 3.5}, {0, 0, -1}, 1, 1)[0], 0);
+  EXPECT_GT(lit.sampler.delta_light({3.9, 2, 2.5}, {-1, 0, 0}, {}, 1)[0], 0);
+  EXPECT_EQ(lit.sampler.delta_light({2, 2, 3.5}, {0, 0, -1}, {}, 1)[0], 0);
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ struct Quality {
   LinkOptions links;
   DirectOptions direct;
   double residual;
+  bool tells_slit_gains = false;
 };
 
 Quality coarse(const HierarchyOptions& o) {
@@ -59,7 +60,8 @@ Quality full(const HierarchyOptions& o, std::size_t leaves, bool by_spot = false
     bundle *= 2, pairs *= 2;
   return {{.bundle_rays = bundle, .bright_rays = pairs, .seed = o.seed},
           {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = o.seed},  // few miss that a corner is lit
-          o.residual};
+          o.residual,
+          true};
 }
 
 bool merges(std::size_t leaves, const LinkOptions& links) {
@@ -198,7 +200,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   ElementTree tree = build_tree(leaves, before ? guess : glow);
   Illumination light(problem, glow);
-  if (before) light.slit_gains = find_slit_gains(problem, guess, options.seed);
+  if (before && quality.tells_slit_gains) light.slit_gains = find_slit_gains(problem, guess, options.seed);
   const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;

@@ -20,12 +20,13 @@ namespace {
 
 // By judgement: what is taken for an opening or not biases nothing, it only says where to look.
 constexpr int kFewRays = 16, kRays = 128;          ///< to a side, to sift and to judge
+constexpr int kManyRays = 256;                     ///< where it is so dark that those found nothing
 constexpr double kSeesSky = 0.1;                   ///< share of the rays out that meet sky
 constexpr double kIndoors = 0.2;                   ///< most of the rays in that do
 constexpr double kWideOpen = 0.5;                  ///< and those that do so mostly are preferred
 constexpr double kDarker = 0.1;                    ///< of what one side of a slit sees: the other sees less
 constexpr double kDarkerByFew = 0.5;               ///< the same, to sift
-constexpr double kBeside = 16;                     ///< widths of a slit: what is nearer is lit by it
+constexpr int kSeldom = 32, kSeldomByFew = 8;      ///< or this many times fewer ways find light there
 constexpr int kWalks = 8;                          ///< for each of those rays, to judge how bright a side is
 constexpr std::size_t kFewLuminaires = 16;         ///< that are asked for it
 constexpr std::size_t kMostSlits = 200;            ///< that are judged by walks, the largest
@@ -60,17 +61,17 @@ class Judge {
 
   /// Turns the normal into the darker room. returns whether it is much darker than the other one.
   bool judge_slit(LightArea& o, std::uint64_t key) const {
-    for (const int count : {kFewRays, kRays}) {
-      double front = brightness_from(o, o.normal, count, key), back = brightness_from(o, -o.normal, count, key + 2);
-      if (front > back) {
+    for (const int count : {kFewRays, kRays, kManyRays}) {
+      Brightness front = brightness_from(o, o.normal, count, key), back = brightness_from(o, -o.normal, count, key + 2);
+      if (is_darker(back, front)) {
         turn(o);
         std::swap(front, back);
       }
-      o.brightness = back;
-      // A few walks may find the way out through the slit itself.
-      if (!(back > 0) || front > (count == kRays ? kDarker : kDarkerByFew) * back) return false;
+      o.brightness = back.mean;
+      if (front.mean > kDarkerByFew * back.mean && front.lit * kSeldomByFew > back.lit) return false;
+      if (count > kFewRays && back.lit > 0) return front.mean <= kDarker * back.mean || front.lit * kSeldom <= back.lit;
     }
-    return true;
+    return false;  // dark on both sides
   }
 
   /// Turns the normal into the room. returns the share of rays out that see sky; 0: no opening between a room and it.
@@ -110,26 +111,33 @@ class Judge {
     std::reverse(o.corners.begin(), o.corners.end());
   }
 
-  /// Mean radiance of what is seen on one side, by light that has met four surfaces at most. What is right beside the
-  /// slit is lit through it from the other side, and tells nothing of this one.
-  double brightness_from(const LightArea& o, const Vec3& side, int count, std::uint64_t key) const {
-    const double beside = kBeside * o.area / (2 * o.radius);
-    double sum = 0;
-    int away = 0;
+  /// What is seen on one side of a slit, by light that has met four surfaces at most and did not come through the slit
+  /// itself.
+  struct Brightness {
+    double mean = 0;  ///< radiance
+    int lit = 0;      ///< ways that found any light
+  };
+  Brightness brightness_from(const LightArea& o, const Vec3& side, int count, std::uint64_t key) const {
+    Brightness found;
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count * kWalks); ++k) {
-      const Ray ray = ray_through(o, side, key, k, rays_.lift());
-      const Hit hit = rays_.first_hit(patches_, ray);
-      if (!hit.escaped() && hit.first < beside) continue;
-      sum += walk(ray, hit, stream_key(key, k));
-      ++away;
+      const double L = walk(o, ray_through(o, side, key, k, rays_.lift()), stream_key(key, k));
+      found.mean += L / (count * kWalks);
+      found.lit += L > 0;
     }
-    return away > 0 ? sum / away : 0;
+    return found;
   }
-  /// Radiance that comes back along a ray that meets `hit`, luminous mean, by one way over surfaces.
-  double walk(Ray ray, Hit hit, std::uint64_t key) const {
+  /// A room may look bright by the one way in a thousand that finds the sky through another slit.
+  static bool is_darker(const Brightness& a, const Brightness& b) {
+    if (a.lit * kSeldomByFew <= b.lit || b.lit * kSeldomByFew <= a.lit) return a.lit < b.lit;
+    return a.mean < b.mean;
+  }
+  /// Radiance that comes back along a ray, luminous mean, by one way over surfaces.
+  double walk(const LightArea& o, Ray ray, std::uint64_t key) const {
     constexpr std::uint32_t kMostBounces = 4;
     Spectrum L(0.0), share(1.0);
     for (std::uint32_t bounce = 0;; ++bounce) {
+      const Hit hit = rays_.first_hit(patches_, ray);
+      if (bounce > 0 && is_passed(o, ray.origin, ray.direction, hit.first)) return luminous_mean(L);
       share *= hit.transmittance;
       if (hit.escaped()) return luminous_mean(L + share * sky_(hit.direction(ray)));
       if (!hit.patch.valid() || bounce == kMostBounces) return luminous_mean(L);
@@ -138,7 +146,6 @@ class Judge {
       share *= patches_.rho[hit.patch];
       const auto u = sobol4(bounce, key);
       ray = {p, cosine_direction(Frame(n), u[0], u[1])};
-      hit = rays_.first_hit(patches_, ray);
     }
   }
   Spectrum delta_light(const Vec3& p, const Vec3& n) const {

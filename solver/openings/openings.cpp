@@ -28,6 +28,16 @@ double way_out(const LightArea& opening, const Vec3& p, const Vec3& d) {
   return -1;
 }
 
+bool is_passed(const LightArea& opening, const Vec3& p, const Vec3& d, double distance) {
+  const double out = way_out(opening, p, d);
+  if (out >= 0) return out <= distance;
+  const Vec3 towards = opening.centre - p;
+  if (!(dot(d, opening.normal) > 0) || !(dot(towards, opening.normal) > 0)) return false;  // not from behind it
+  const double beyond = dot(towards, d) + 2 * opening.radius;
+  const double in = way_out(opening, p + d * beyond, -d);
+  return in >= 0 && beyond - in >= 0 && beyond - in <= distance;
+}
+
 std::uint32_t first_way_out(std::span<const LightArea> openings, std::span<const std::uint32_t> numbers, const Vec3& p,
                             const Vec3& d, double distance) {
   for (const std::uint32_t k : numbers) {

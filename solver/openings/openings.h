@@ -14,6 +14,9 @@ namespace clerestory {
 /// Where the ray from p along d (unit) passes the opening on its way out [m]; negative: it does not.
 double way_out(const LightArea& opening, const Vec3& p, const Vec3& d);
 
+/// Whether the ray from p along d (unit) passes it in either direction before it meets a surface at `distance`.
+bool is_passed(const LightArea& opening, const Vec3& p, const Vec3& d, double distance);
+
 inline constexpr std::uint32_t kNoOpening = 0xffffffff;
 
 /// The first of `numbers`, in their order, that the ray passes before it meets a surface at `distance`, and that its

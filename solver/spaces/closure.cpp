@@ -12,15 +12,6 @@
 
 namespace clerestory {
 
-namespace {
-
-bool is_passed(const LightArea& opening, const Vec3& p, const Vec3& d, double distance) {
-  const double out = way_out(opening, p, d), in = way_out(opening, p + d * distance, -d);
-  return (out >= 0 && out <= distance) || (in >= 0 && in <= distance);
-}
-
-}  // namespace
-
 Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed) {
   const PatchSet& patches = problem.patches;
   const RayScene& rays = problem.rays;

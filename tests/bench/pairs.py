@@ -30,8 +30,8 @@ def cpu_name():
 
 def run(program, scene, accuracy, sky, folder):
     report = os.path.join(folder, "report.json")
-    command = [program, "solve", scene, "-o", os.path.join(folder, "out.vtp"), "--sensors-out",
-               os.path.join(folder, "out.csv"), "--report", report, "--accuracy", accuracy, "--quiet"]
+    command = [program, "solve", scene, "-o", os.path.join(folder, "out.vtp"), "--report", report,
+               "--accuracy", accuracy, "--quiet"]
     if sky:
         command += ["--sky", sky]
     child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)

@@ -14,7 +14,7 @@ namespace clerestory {
 namespace {
 
 constexpr std::uint32_t kLines = 4096;       ///< through one slit
-constexpr std::size_t kMostLines = 1 << 15;  ///< through all of them
+constexpr std::size_t kMostLines = 1 << 14;  ///< through all of them
 constexpr unsigned kMostRays = 32;  ///< of a path, on the mean; where it is so bright that they hardly end, fewer
 constexpr int kEnoughLines = 32;    ///< in a bin, to tell it from the others
 

@@ -8,7 +8,7 @@
 namespace clerestory {
 
 /// B: radiosity of the patches (N x channels), which elements look up. Lines through all points of each slit, out to
-/// the bright side, and a path from where each of them ends: at most 32,768 in all. Empty without slits.
+/// the bright side, and a path from where each of them ends: at most 16,384 in all. Empty without slits.
 SlitGains find_slit_gains(const Problem& problem, const Field& B, std::uint64_t seed);
 
 /// gather_illumination() that knows them.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace clerestory {
+
 DividedLines::DividedLines(FaceComplex& complex, const std::vector<PlanarDomain>& domains, double longest) {
   std::size_t count = 0;
   for (const PlanarDomain& d : domains) count += d.lines.size();

@@ -14,15 +14,14 @@ namespace {
 
 // By judgement. Elements are halved where light varies, down to an eighth of the longest edge: they find the shadow of
 // what stands further off by themselves.
-constexpr double kNear = 0.125;     ///< of an element: an edge further off is no end of anything at that plane
-constexpr double kSteep = 0.34;     ///< sine of the angle at which a surface leaves the plane
-constexpr double kLevel = 0.1;      ///< sine of the angle up to which a surface leads along the plane
-constexpr double kDeep = 4;         ///< of the gap: how far the surface reaches away, at least
-constexpr double kWide = 0.5;       ///< of an element: a smaller outline is that of a foot
-constexpr double kShortest = 0.03;  ///< of an element: shorter edges are detail
-constexpr std::size_t kMostLooks =
-    4000;  ///< of an edge at faces near by, in the mean: where more crowd there is no outline
-constexpr double kLargePlane = 0.25;  ///< of the square of an element
+constexpr double kNear = 0.125;           ///< of an element: an edge further off is no end of anything at that plane
+constexpr double kSteep = 0.34;           ///< sine of the angle at which a surface leaves the plane
+constexpr double kLevel = 0.1;            ///< sine of the angle up to which a surface leads along the plane
+constexpr double kDeep = 4;               ///< of the gap: how far the surface reaches away, at least
+constexpr double kWide = 0.5;             ///< of an element: a smaller outline is that of a foot
+constexpr double kShortest = 0.03;        ///< of an element: shorter edges are detail
+constexpr std::size_t kMostLooks = 4000;  ///< of an edge at faces near by, on the mean; where more crowd no outline is
+constexpr double kLargePlane = 0.25;      ///< of the square of an element
 
 /// An edge and the opaque faces that have it.
 struct Edge {

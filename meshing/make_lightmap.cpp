@@ -95,14 +95,15 @@ struct Facing {
   /// A little into the surface: towards the mean of the facets' centroids where that is on one of them. Where the
   /// surface goes most of the way around a corner of something else, the mean may be inside of that; then towards the
   /// widest facet's centroid. least_way: share of it.
-  Vec3 inward(double least_way, const VertexLightmap& map) const {
+  Vec3 inward(double least_way, double off_edges) const {
     Vec3 mean;
     for (const FacetAtPoint& f : in_plane) mean += f.to_centroid();
     mean = mean / static_cast<double>(in_plane.size());
     const auto on = std::ranges::find_if(in_plane, [&](const FacetAtPoint& f) { return f.holds(mean, normal); });
     const auto widest = std::ranges::max_element(in_plane, {}, &FacetAtPoint::angle);
     const FacetAtPoint& facet = on != in_plane.end() ? *on : *widest;
-    return (on != in_plane.end() ? mean : facet.to_centroid()) * std::max(least_way, map.way_inside(facet.height()));
+    return (on != in_plane.end() ? mean : facet.to_centroid()) *
+           std::max(least_way, VertexLightmap::way_inside(facet.height(), off_edges));
   }
 };
 
@@ -135,7 +136,7 @@ void place_samples(const PatchSet& patches, std::span<const Corner> around, std:
   double sum = 0;
   for (const Facing& f : facings) sum += f.weight;
   for (const Facing& f : facings) {
-    map.sample_position.push_back(map.position.back() + f.inward(way, map));
+    map.sample_position.push_back(map.position.back() + f.inward(way, map.off_edges));
     map.sample_normal.push_back(f.normal);
     map.sample_weight.push_back(sum > 0 ? f.weight / sum : 1.0 / static_cast<double>(facings.size()));
   }

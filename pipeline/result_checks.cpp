@@ -38,7 +38,9 @@ void warn_about_error(const Solved& s, Observer& observer) {
 }
 
 void warn_about_sensors(const Solved& s, Observer& observer) {
-  if (!s.error || s.sensor_E.size() == 0) return;  // nothing was measured
+  const bool was_stopped =
+      s.solution.stop == StopReason::time_limit || s.solution.stop == StopReason::interrupted;  // perhaps in the midst
+  if (was_stopped || !s.error || s.sensor_E.size() == 0) return;
   double most = 0;
   for (std::size_t k = 0; k < s.sensor_E.size(); ++k) most = std::max(most, photometric(s.sensor_E[k]));
   if (!s.error_sensors) {

@@ -352,7 +352,8 @@ std::uint32_t ElementMesh::add_point(const Parting& here, const Parting* other, 
   const auto sample = [&](const Parting& facet, double weight) {
     const Vec3 to_centroid = (facet.apex - place) / 3;
     const double height = length(cross(facet.apex - place, along)) / length(along);
-    points_.sample_position.push_back(place + to_centroid * std::max(way, points_.way_inside(height)));
+    points_.sample_position.push_back(place + to_centroid *
+                                                  std::max(way, VertexLightmap::way_inside(height, points_.off_edges)));
     points_.sample_normal.push_back(patches_.normal[elements_[facet.element].patch]);
     points_.sample_weight.push_back(weight);
   };

@@ -50,8 +50,8 @@ double most_delta_light(const Problem& problem, double shortest_edge) {
 class Gatherer {
  public:
   Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options,
-           const RowLight* layers)
-      : light_(gather_illumination_by_slits(problem, B, options.seed)),
+           const RowLight* layers, const Monitor& monitor)
+      : light_(gather_illumination_by_slits(problem, B, options.seed, monitor)),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
@@ -229,7 +229,7 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
     return field;
   }
   field.E = field.delta_light = Field(0, problem.patches.channels);
-  Gatherer gatherer(problem, B, mesh, options, layers);
+  Gatherer gatherer(problem, B, mesh, options, layers, monitor);
   for (int round = 0;; ++round) {
     field.complete = gatherer.gather(field, monitor);
     if (!field.complete || round == kMostRounds || mesh.points().position.size() >= options.most_points) break;

@@ -23,6 +23,7 @@ namespace {
 Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOptions& options,
                   std::span<const std::uint32_t> looked_at, LightRow* row) {
   const Problem& problem = light.problem;
+  const std::span<const LightArea> openings = problem.lights.sky_openings();
   const Frame frame(problem.patches.normal[patch]);
   const auto corners = problem.patches.corner_positions(PatchId{patch});
   const std::uint64_t key = stream_key(options.seed, kSkyRaysOfPatch, patch);
@@ -32,8 +33,7 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
     const Ray ray{problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
                   cosine_direction(frame, u[0], u[1])};
     const Hit hit = problem.rays.first_hit(problem.patches, ray);
-    if (!hit.escaped() ||
-        first_way_out(problem.lights.sky_openings(), looked_at, ray.origin, ray.direction, hit.first) != kNoOpening)
+    if (!hit.escaped() || first_way_out(openings, looked_at, ray.origin, ray.direction, hit.first) != kNoOpening)
       continue;
     const Vec3& direction = hit.direction(ray);
     sum += light.sky(direction) * hit.transmittance;

@@ -37,7 +37,7 @@ struct DirectLight {
 /// Patches of which many were there before: of them the sky through openings need not be looked for again.
 struct PatchesOfRound {
   static constexpr std::uint32_t kNew = 0xffffffff;
-  std::vector<std::uint32_t> name;      ///< by patch: it keeps it, and with it the rays through openings
+  std::span<const std::uint32_t> name;  ///< by patch: it keeps it, and with it the rays through openings
   std::uint64_t seed = 1;               ///< of these rays, in all rounds
   const DirectLight* before = nullptr;  ///< what was found then; null: nothing
   std::vector<std::uint32_t> number;    ///< by patch: of the same patch then, or kNew
@@ -64,8 +64,8 @@ struct DirectRows {
 /// Points are spread over each patch, so that the edge of a shadow gives a patch its lit share. Looking twice at edges
 /// favours all lit and all dark alike, by less than 0.03 of a patch, which cancels along an edge.
 ///
-/// rows  where it is not null: filled with what the rays found, 16 bytes for each luminaire and sun that reaches a
-///       patch, and for each ray of the patch that looks for the sky.
+/// rows   where it is not null: filled with what the rays found, 16 bytes for each luminaire and sun that reaches a
+///        patch, and for each ray of the patch that looks for the sky.
 /// round  null, or what may be taken over where there are no rows, with the same bits
 DirectLight direct_light(const Illumination& light, const DirectOptions& options, const Monitor& monitor = {},
                          DirectRows* rows = nullptr, const PatchesOfRound* round = nullptr);

@@ -200,7 +200,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   ElementTree tree = build_tree(leaves, before ? guess : glow);
   Illumination light(problem, glow);
-  if (before && quality.tells_slit_gains) light.slit_gains = find_slit_gains(problem, guess, options.seed);
+  if (before && quality.tells_slit_gains) light.slit_gains = find_slit_gains(problem, guess, options.seed, monitor);
   const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;

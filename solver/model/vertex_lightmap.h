@@ -38,7 +38,7 @@ struct VertexLightmap {
   double off_edges = 0;
   static constexpr double kOffEdges = 2e-7;  ///< of the model's diagonal
   /// Share of the way to the centroid of a facet of that height over its edges at the point [m].
-  double way_inside(double height) const {
+  static double way_inside(double height, double off_edges) {
     return height > 0 ? std::clamp(3 * off_edges / height, kWayToCentroid, kWayFromOutline) : kWayToCentroid;
   }
   // Where irradiance is gathered, S samples: one for each direction that the facets around a point face, so one for a

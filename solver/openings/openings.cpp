@@ -79,29 +79,34 @@ std::vector<LightArea> slits_among(std::span<const LightArea> openings) {
   return slits;
 }
 
-Vec3 point_of(const LightArea& opening, double u, double v) {
-  double left = u * opening.area;
+namespace {
+
+/// The triangle where the running sum of areas passes `left`, which becomes what is left in it [m2].
+const std::array<Vec3, 3>& triangle_at(const LightArea& opening, double& left) {
   for (const auto& triangle : opening.triangles) {
     const double area = length(cross(triangle[1] - triangle[0], triangle[2] - triangle[0])) / 2;
-    if (left < area) return point_on_triangle(triangle, left / area, v);
+    if (left < area) return triangle;
     left -= area;
   }
-  return point_on_triangle(opening.triangles.back(), 0.5, v);  // by rounding
+  return opening.triangles.back();  // by rounding
+}
+
+}  // namespace
+
+Vec3 point_of(const LightArea& opening, double u, double v) {
+  double left = u * opening.area;
+  const auto& triangle = triangle_at(opening, left);
+  const double area = length(cross(triangle[1] - triangle[0], triangle[2] - triangle[0])) / 2;
+  return point_on_triangle(triangle, std::min(left / area, 1.0), v);
 }
 
 Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, std::uint32_t k, double lift) {
   const auto u = sobol4(k, key);
   double left = sobol4(k, key + 1)[0] * opening.area;
-  const auto* triangle = &opening.triangles.front();
-  for (const auto& t : opening.triangles) {
-    triangle = &t;
-    const double area = length(cross(t[1] - t[0], t[2] - t[0])) / 2;
-    if (left < area) break;
-    left -= area;
-  }
+  const auto& triangle = triangle_at(opening, left);
   // A little short of what is around: rounding would put the start behind it.
   const double inset = std::min(0.05, lift * 2 * opening.radius / opening.area);
-  const Vec3 p = point_on_triangle(*triangle, u[0], u[1]);
+  const Vec3 p = point_on_triangle(triangle, u[0], u[1]);
   return {p + (opening.centre - p) * inset + side * lift, cosine_direction(Frame(side), u[2], u[3])};
 }
 

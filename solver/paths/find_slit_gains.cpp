@@ -32,7 +32,7 @@ struct LineEnds {
 
 /// returns  gains by bin
 std::array<float, SlitGains::kBins> gains_behind(const Illumination& light, const Field& B, const LightArea& slit,
-                                                 std::uint32_t count, std::uint64_t key) {
+                                                 std::uint32_t count, std::uint64_t key, const Monitor& monitor) {
   const PatchSet& patches = light.problem.patches;
   const RayScene& rays = light.problem.rays;
   std::array<LineEnds, SlitGains::kBins> ends;
@@ -45,7 +45,8 @@ std::array<float, SlitGains::kBins> gains_behind(const Illumination& light, cons
     const auto u = sobol4(k, mix_bits(key));
     RandomStream random(key, k);
     const Spectrum E = trace_path(light, rays.off_surface(hit.position(out), n), n,
-                                  path_start({u[0], u[1]}, k, mix_bits(key)), random, cost, {});
+                                  path_start({u[0], u[1]}, k, mix_bits(key)), random, cost, monitor);
+    if (monitor.should_stop()) break;  // a path that it ended is worth nothing
     ends[SlitGains::bin(slit, hit.first)].add(
         {luminous_mean(patches.M[hit.patch] + patches.rho[hit.patch] * E), luminous_mean(B[hit.patch]), 1});
   }
@@ -59,7 +60,7 @@ std::array<float, SlitGains::kBins> gains_behind(const Illumination& light, cons
 
 }  // namespace
 
-SlitGains find_slit_gains(const Problem& problem, const Field& B, std::uint64_t seed) {
+SlitGains find_slit_gains(const Problem& problem, const Field& B, std::uint64_t seed, const Monitor& monitor) {
   const std::vector<LightArea>& openings = problem.lights.openings;
   std::vector<std::uint32_t> slits;
   for (std::uint32_t k = 0; k < openings.size(); ++k)
@@ -73,15 +74,16 @@ SlitGains find_slit_gains(const Problem& problem, const Field& B, std::uint64_t 
   parallel_for(slits.size(), 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s) {
       const std::uint32_t k = slits[s];
-      found.gain[k] = gains_behind(light, B, openings[k], count, stream_key(seed, kSlitGains, k));
+      found.gain[k] = gains_behind(light, B, openings[k], count, stream_key(seed, kSlitGains, k), monitor);
     }
   });
   return found;
 }
 
-Illumination gather_illumination_by_slits(const Problem& problem, const Field& B, std::uint64_t seed) {
+Illumination gather_illumination_by_slits(const Problem& problem, const Field& B, std::uint64_t seed,
+                                          const Monitor& monitor) {
   Illumination light = gather_illumination(problem, B);
-  light.slit_gains = find_slit_gains(problem, B, seed);
+  light.slit_gains = find_slit_gains(problem, B, seed, monitor);
   return light;
 }
 

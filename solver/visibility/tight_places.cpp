@@ -5,15 +5,14 @@
 
 #include "solver/geometry/triangle.h"
 #include "solver/model/parallel.h"
+#include "solver/model/vertex_lightmap.h"
 
 namespace clerestory {
 namespace {
 
-constexpr double kReach = 2;        // lifts: what is further apart than that a lifted end cannot pass
-constexpr double kBesideEdge = 10;  // reaches: from there on surfaces that meet at atan(1 / 10) are far enough apart
-// Vertices are evaluated that near to an edge (VertexLightmap::way_inside), by the height of a triangle over it.
-constexpr double kShareOfHeight = 6e-4, kMostOfHeight = 0.08;
-constexpr double kKeptOff = 0.2;     // reaches
+constexpr double kReach = 2;         // lifts: what is further apart than that a lifted end cannot pass
+constexpr double kBesideEdge = 10;   // reaches: from there on surfaces that meet at atan(1 / 10) are far enough apart
+constexpr double kKeptOff = 0.2;     // reaches: VertexLightmap::kOffEdges, as a lift is 5e-7 of the diagonal
 constexpr double kRounding = 0.05;   // reaches: what float moves a point sideways
 constexpr double kSamePlane = 1e-3;  // reaches: two coordinates on the grid of meshing, and what a sliver leans
 
@@ -30,7 +29,8 @@ class Prism {
       const Vec3 edge = corner[(k + 1) % 3] - corner[k];
       inward_[k] = normalized(cross(normal_, edge));
       const double height = twice_area / length(edge);
-      const double kept = std::max(kShareOfHeight * height, std::min(kKeptOff * reach, kMostOfHeight * height));
+      // Vertices are evaluated so near to an edge: a third of their way to the centroid, less a tenth for bent facets.
+      const double kept = 0.9 * VertexLightmap::way_inside(height, kKeptOff * reach) * height / 3;
       inset_[k] = std::min(kBesideEdge * reach, kept) - kRounding * reach;
     }
   }

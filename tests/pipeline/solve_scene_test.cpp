@@ -235,6 +235,26 @@ TEST(WarnAboutResult, SaysHowMuchLightIsMissingOrTooMuch) {
   EXPECT_TRUE(any_says(error.warnings, "the measured error is 30.0 % rms"));
 }
 
+TEST(WarnAboutResult, SaysWhenTheErrorOfTheSensorsIsLargeOrNotKnown) {
+  Solved solved = solve_scene(glowing_box(), draft());
+  const auto warnings = [&] {
+    Listener listener;
+    warn_about_result(solved, listener);
+    return listener.warnings;
+  };
+  solved.error_sensors = MeasuredError{.rms_relative = 0.3, .p95_relative = 0.2, .samples = 64, .confidence = 0.1};
+  ASSERT_EQ(warnings().size(), 1u);
+  EXPECT_TRUE(any_says(warnings(), "the measured error of the sensors is 30.0 % rms"));
+  solved.error_sensors.reset();  // no path found the 20 W/m2 that they show
+  ASSERT_EQ(warnings().size(), 1u);
+  EXPECT_TRUE(any_says(warnings(), "how wrong the sensors are is not known: they show up to 3580 lx"));
+  solved.solution.stop = StopReason::time_limit;  // then they may not have been measured at all
+  EXPECT_TRUE(warnings().empty());
+  solved.solution.stop = StopReason::converged;
+  solved.sensor_E.set(0, Spectrum(0.0));  // nothing is shown, and nothing was found
+  EXPECT_TRUE(warnings().empty());
+}
+
 TEST(SolveScene, SaysThatALampStandsInsideOfASolid) {
   Scene scene = box_with_lamp(1.5);
   scene.surfaces.push_back("table");

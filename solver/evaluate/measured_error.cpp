@@ -25,7 +25,7 @@ constexpr int kPilotPaths = 8;            ///< at each of the fewest points, to 
 constexpr std::size_t kFewestPoints = 8;  ///< in rooms so bright that paths hardly end
 constexpr std::size_t kMostPoints = 1 << 12;
 
-constexpr double kShareOfRays = 0.1;  ///< of those that the result took
+constexpr double kShareOfRays = 0.05;  ///< of those that the result took
 
 }  // namespace
 

@@ -124,8 +124,10 @@ class PairSampler {
     }
   }
   void pass_glass() {
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      if (share[k] == 0) continue;
+    unsigned seen = 0;
+    for (unsigned k = 0; k < kLanes; ++k) seen |= (share[k] != 0 ? 1u : 0u) << k;
+    for (unsigned met = rays_.meets_glass(segments_, static_cast<std::uint16_t>(seen)); met; met &= met - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(met));
       Vec3 from{segments_.from_x[k], segments_.from_y[k], segments_.from_z[k]};
       Vec3 to{segments_.to_x[k], segments_.to_y[k], segments_.to_z[k]};
       if (rays_.has_tight_places()) from = segments_.from[k], to = segments_.to[k];

@@ -21,8 +21,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 // By judgement: they decide who finds which light, and bias nothing.
-constexpr double kWorthLooking = 0.1;  ///< share of bright patches' light outside of the bright areas looked at
-constexpr double kLeastOfBest = 0.2;   ///< of the light of the best bright area, else it has no rays of its own
+constexpr std::size_t kMuchBright = 3;  ///< of 16 rays around
+constexpr double kFoundAnyway = 1.5;    ///< of what these met: no more light that is hard to meet
+constexpr double kNarrow = 4;  ///< times the bundle's density of directions: what shadow rays find, and it hardly
+constexpr double kWorthAShare = 0.001;  ///< of all light at a point, else it is left to chance
+constexpr double kWorthLooking = 0.1;   ///< share of bright patches' light outside of the bright areas looked at
+constexpr double kLeastOfBest = 0.2;    ///< of the light of the best bright area, else it has no rays of its own
 constexpr std::size_t kMostOpenings = 8, kMostBrightAreas = 4;  ///< that a point looks at by rays of their own
 /// Owners of rays: openings and, from kBrightAreas on, bright areas, by number.
 constexpr std::uint32_t kBrightAreas = 0x80000000, kNobody = kNoOpening;
@@ -31,7 +35,12 @@ constexpr std::uint32_t kBrightAreas = 0x80000000, kNobody = kNoOpening;
 class View {
  public:
   View(const Illumination& light, const Vec3& p, const Frame& frame, int bright_rays, const GatherPlan& plan)
-      : light_(light), p_(p), frame_(frame), bright_rays_(bright_rays), plan_(plan) {}
+      : light_(light),
+        p_(p),
+        frame_(frame),
+        bright_rays_(bright_rays),
+        plan_(plan),
+        at_(light.sampler.receiver(p, frame.n)) {}
 
   /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
   /// openings or bright areas, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
@@ -57,8 +66,7 @@ class View {
         double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
         back *= share;
         if (owner == kNobody && bright_rays_ > 0) {
-          share = balance_heuristic(density[k],
-                                    bright_rays_ * light_.sampler.density(hit, p_, frame_.n, directions[k], true));
+          share = balance_heuristic(density[k], bright_rays_ * light_.sampler.density(hit, at_, directions[k], true));
           back *= share;
         }
         values[k] = back * hit.transmittance;
@@ -66,6 +74,8 @@ class View {
       }
     }
   }
+
+  const LightTree::Receiver& at() const { return at_; }
 
   double slit_gain(std::uint32_t number, const Vec3& direction, double distance) const {
     if (light_.slit_gains.gain.empty()) return 1;
@@ -89,23 +99,40 @@ class View {
   const Frame& frame_;
   int bright_rays_;
   const GatherPlan& plan_;
+  LightTree::Receiver at_;
 };
 
 int bright_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan) {
   return plan.looks_for_bright_patches && light.sampler.has_bright_patches() ? pattern.quality().bright_rays : 0;
 }
 
-/// Whether any of a few rays to bright patches gets there: those outside of a room are none of its lamps.
-bool sees_bright_patches(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                         unsigned long long& rays) {
+/// Whether a few rays to bright patches bring light that the bundle would find by chance only: those outside of a room
+/// are none of its lamps, and a sunlit ground is as wide as what a bundle looks for anyway.
+///
+/// met  their light by rays around, see wide_bright_light().
+bool misses_bright_patches(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                           double others, double met, unsigned long long& rays) {
   if (!light.sampler.has_bright_patches()) return false;
-  return any_visible(light.problem.rays, GatherPattern::kBrightPilots, [&](std::uint32_t k, Vec3& from, Vec3& to) {
-    const auto& u = pattern.bright_pilots()[k];
-    const LightSample s = light.sampler.sample(p, n, u[0], u[1], u[2], true);
-    from = p, to = s.end;
-    ++rays;
-    return s.density > 0;
+  const LightTree::Receiver at = light.sampler.receiver(p, n);
+  double wide = 0, narrow = 0;
+  struct Load {
+    double light;
+    bool is_narrow;
+  };
+  auto shadows = shadow_rays<Load>(light.problem.rays, [&](const Load& load, const Spectrum& passes) {
+    (load.is_narrow ? narrow : wide) += load.light * luminous_mean(passes) / GatherPattern::kBrightPilots;
   });
+  for (const auto& u : pattern.bright_pilots()) {
+    const LightSample s = light.sampler.sample(at, u[0], u[1], u[2], true);
+    if (!(s.density > 0)) continue;
+    const double cosine = dot(n, normalized(s.end - p)) / kPi;
+    shadows.send(p, s.end, {luminous_mean(s.irradiance), s.density > kNarrow * cosine});
+    ++rays;
+  }
+  shadows.trace();
+  if (!(wide + narrow > 0)) return light.sky.dark();  // all the light there is comes from somewhere
+  if (wide + narrow < kFoundAnyway * met) return false;
+  return narrow > kWorthAShare * (others + wide + narrow);
 }
 
 /// What a few rays find of sky that belongs to none of the openings: part of the view may be sky, or end at a bright
@@ -139,23 +166,32 @@ SkyInView sky_in_view(const Illumination& light, const Vec3& p, const Frame& fra
   return sky ? SkyInView::all : SkyInView::none;
 }
 
-/// The openings over p, but none where much of the sky is in view.
-std::vector<std::uint32_t> openings_worth_looking(const Illumination& light, const Vec3& p, const Frame& frame,
-                                                  const GatherPattern& pattern, unsigned long long& rays) {
-  const std::vector<LightArea>& openings = light.problem.lights.openings;
-  std::vector<std::uint32_t> over = areas_over(openings, p, frame.n, kMostOpenings, 0);
-  if (over.empty()) return over;
-  std::array<Ray, 16> pilots;
+/// What a few rays around meet: how much of the view is what.
+std::array<Hit, 16> look_around(const Illumination& light, const Vec3& p, const Frame& frame,
+                                const GatherPattern& pattern, unsigned long long& rays) {
+  std::array<Ray, 16> around;
   std::array<Hit, 16> met;
   const int step = pattern.bundle().budget().strata() / 16;
   for (int k = 0; k < 16; ++k) {
     const auto& d = pattern.bundle().pilot(k * step);
-    pilots[static_cast<std::size_t>(k)] = {p, frame.to_world(d[0], d[1], d[2])};
+    around[static_cast<std::size_t>(k)] = {p, frame.to_world(d[0], d[1], d[2])};
   }
-  light.problem.rays.first_hits(light.problem.patches, pilots, met);
+  light.problem.rays.first_hits(light.problem.patches, around, met);
   rays += 16;
-  if (sees_much_sky(met)) over.clear();
-  return over;
+  return met;
+}
+
+/// Irradiance of bright patches outside of bright areas that rays around met, luminous mean; 0 where too few met any.
+double wide_bright_light(const Illumination& light, std::span<const Hit> met) {
+  double sum = 0;
+  std::size_t bright = 0;
+  for (const Hit& hit : met) {
+    if (!hit.patch.valid() || !light.sampler.is_bright(hit.patch)) continue;
+    if (light.bright_areas.of(hit.patch) != BrightAreas::kNone) continue;
+    ++bright;
+    sum += luminous_mean(light.sampler.glow()[hit.patch] * hit.transmittance);
+  }
+  return bright >= kMuchBright ? sum / static_cast<double>(met.size()) : 0;
 }
 
 std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {
@@ -330,9 +366,9 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
     if (row) add_to_row(met, weight, *row);
   }
   // Where less is seen of an area than the plan knew, its rays may take away a little more than the mean brought; they
-  // alone give what is left.
-  sum.E = {sum.E[0] < 0 ? by_rays[0] : sum.E[0], sum.E[1] < 0 ? by_rays[1] : sum.E[1],
-           sum.E[2] < 0 ? by_rays[2] : sum.E[2]};
+  // alone give what is left, and nothing where they find nothing.
+  for (int c = 0; c < kMaxChannels; ++c)
+    if (sum.E[c] < 0 || by_rays[c] == 0) sum.E[c] = by_rays[c];
   if (row) {
     const Spectrum gain = gain_of_area(sum.E, by_rays);
     for (RowEntry& e : std::span(*row).subspan(begin)) e.scale(gain);
@@ -352,14 +388,13 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
     double weight;
   };
   Spectrum sum(0.0);
-  auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
-    const Spectrum passes = rays.glass_transmittance(from, to);
+  auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Spectrum& passes) {
     sum += load.irradiance * passes;
     if (row) row->push_back(RowEntry::of_patch(load.patch, load.weight / count * passes));
   });
   for (int k = 0; k < count; ++k) {
     const auto& u = pattern.bright_choices()[static_cast<std::size_t>(k)];
-    const LightSample s = light.sampler.sample(p, frame.n, u[0], u[1], u[2], true);
+    const LightSample s = light.sampler.sample(view.at(), u[0], u[1], u[2], true);
     if (!(s.density > 0)) continue;
     const Vec3 d = normalized(s.end - p);
     if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
@@ -386,13 +421,18 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   const Frame frame(n);
   GatherPlan plan;
   GatherPlan owners;  // so far: what an area shares with earlier ones is theirs
+  // Light at the point, as far as it is known: what is small beside it need not be known well.
+  double known = light.bright_areas.ambient;
+  if (!light.problem.lights.empty())
+    known += luminous_mean(light.sampler.delta_light(p, n, {.sun_rays = 4, .opening_rays = 4}, pattern.sun_key()));
+  const std::array<Hit, 16> around = look_around(light, p, frame, pattern, rays);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, std::vector<std::uint32_t>& numbers,
                            std::vector<AreaPlan>& plans) {
     const PolygonView polygon(p, n, area.triangles, area.corners);
     if (!(polygon.solid_angle() > 0)) return false;
     const View view(light, p, frame, 0, owners);
-    const double others = light.bright_areas.ambient / std::max(1e-12, form_factor(area, p, n));
-    AreaPlan found = plan_area(pattern.area_cells(), pattern.quality().area, others, [&](auto points, auto values) {
+    const double F = std::max(1e-12, form_factor(area, p, n));
+    AreaPlan found = plan_area(pattern.area_cells(), pattern.quality().area, known / F, [&](auto points, auto values) {
       std::array<PolygonView::Sight, 16> sights;
       for (std::size_t first = 0; first < points.size(); first += 16) {
         const std::size_t count = std::min<std::size_t>(16, points.size() - first);
@@ -401,12 +441,15 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
       rays += points.size();
     });
     if (found.mean.is_black()) return false;
+    known += luminous_mean(found.mean) * F;
     numbers.push_back(owner & ~kBrightAreas);
     plans.push_back(std::move(found));
     return true;
   };
   const std::vector<LightArea>& openings = light.problem.lights.openings;
-  for (const std::uint32_t k : openings_worth_looking(light, p, frame, pattern, rays)) {
+  std::vector<std::uint32_t> over;
+  if (!sees_much_sky(around)) over = areas_over(openings, p, n, kMostOpenings, 0);
+  for (const std::uint32_t k : over) {
     owners.openings.push_back(k);
     if (!look_at(openings[k], k, plan.openings, plan.opening_plans)) owners.openings.pop_back();
   }
@@ -418,7 +461,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   for (const std::uint32_t k : plan.bright_areas) left -= light.bright_areas.flux[k];
   plan.looks_for_bright_patches =
       (light.bright_areas.shape.empty() || left > kWorthLooking * light.bright_areas.all_flux) &&
-      (light.sky.dark() || sees_bright_patches(light, p, n, pattern, rays));
+      misses_bright_patches(light, p, n, pattern, known, wide_bright_light(light, around), rays);
   const Strata& bundle = pattern.bundle();
   const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
   const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;

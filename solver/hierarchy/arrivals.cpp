@@ -59,8 +59,8 @@ class Collector {
       double weight;
       Vec3 direction;
     };
-    auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
-      add(load.source, load.weight, luminous_mean(rays.glass_transmittance(from, to)), true, load.direction);
+    auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Spectrum& passes) {
+      add(load.source, load.weight, luminous_mean(passes), true, load.direction);
     });
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(L_); ++k) {
       const BrightPair pair = bright_pair(area_, around_.light, k, key);

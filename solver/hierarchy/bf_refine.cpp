@@ -104,9 +104,8 @@ class PatchLinks {
     const RayScene& scene = scene_.problem.rays;
     const std::uint64_t key = stream_key(stream_key(options_.seed, kBfPairs), p, q);
     double open = 0, seen = 0;
-    auto shadows = shadow_rays<double>(scene, [&](double kernel, const Vec3& from, const Vec3& to) {
-      seen += kernel / kPairsOfLink * luminous_mean(scene.glass_transmittance(from, to));
-    });
+    auto shadows = shadow_rays<double>(
+        scene, [&](double kernel, const Spectrum& passes) { seen += kernel / kPairsOfLink * luminous_mean(passes); });
     for (std::uint32_t k = 0; k < kPairsOfLink; ++k) {
       const auto u = sobol4(k, key), v = sobol4(k, mix_bits(key));
       const PatchId a = scene_.leaf_at(p, v[0]), b = scene_.leaf_at(q, v[1]);

@@ -32,7 +32,7 @@ BrightPair bright_pair(const ReceiverArea& area, const Illumination& light, std:
   auto v = sobol4(number, mix_bits(key));
   const ReceiverArea::Member& member = area.pick(v[1]);
   const Vec3 from = light.problem.rays.off_surface(point_on_triangle(member.corners, u[0], u[1]), member.normal);
-  const LightSample s = light.sampler.sample(from, member.normal, u[2], u[3], v[0], true);
+  const LightSample s = light.sampler.sample(light.sampler.receiver(from, member.normal), u[2], u[3], v[0], true);
   return {from, s.density > 0 ? s.end : from, member.normal, s};
 }
 

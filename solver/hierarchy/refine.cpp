@@ -91,14 +91,14 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       double* found;
       double light;
     };
-    auto shadows = shadow_rays<Load>(problem.rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
-      *load.found = load.light * luminous_mean(problem.rays.glass_transmittance(from, to));
+    auto shadows = shadow_rays<Load>(problem.rays, [&](const Load& load, const Spectrum& passes) {
+      *load.found = load.light * luminous_mean(passes);
     });
     for (std::size_t s = 0; s < kParts; ++s)
       for (std::uint32_t k = 0; k < kPairs; ++k) {
         const auto u = sobol4(k, pick), v = sobol4(k, place);
         const Vec3 from = lifted(point_on_triangle(parts[s], v[0], v[1]));
-        const LightSample sample = light.sampler.sample(from, normal, u[0], u[1], u[2], true);
+        const LightSample sample = light.sampler.sample(light.sampler.receiver(from, normal), u[0], u[1], u[2], true);
         if (!(sample.density > 0)) continue;
         const double cos_p = std::max(0.0, dot(normal, normalized(sample.end - from))) / std::numbers::pi;
         const double sent =

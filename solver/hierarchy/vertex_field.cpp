@@ -20,6 +20,8 @@ constexpr double kDark = 0.02;
 /// Share of the difference between corners that may hide a shadow which lies between them.
 constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
+/// Shortest edges: so far off the pilot rays of a point tell enough.
+constexpr double kNearby = 4;
 
 /// The points of the mesh that are worth a gather: all, or so many, those of the largest elements.
 std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
@@ -46,6 +48,30 @@ double most_delta_light(const Problem& problem, double shortest_edge) {
   return flux > 0 ? sun + flux / smallest : std::numeric_limits<double>::infinity();
 }
 
+/// For each point the one that sends pilot rays for it: itself, or one that faces as it does on the same surface, no
+/// further than that.
+std::vector<std::uint32_t> pilots_nearby(const ElementMesh& mesh, double distance) {
+  constexpr double kAlike = 0.95;  // cosine: what lies over the one's horizon lies over the other's
+  const VertexLightmap& at = mesh.points();
+  std::vector<std::uint32_t> pilot(at.position.size(), VertexLightmap::kNone);
+  const auto serves = [&](std::uint32_t q, std::uint32_t p) {
+    return q != VertexLightmap::kNone && length(at.position[q] - at.position[p]) <= distance &&
+           dot(at.sample_normal[at.sample_begin[q]], at.sample_normal[at.sample_begin[p]]) > kAlike;
+  };
+  for (const std::uint32_t leaf : mesh.leaves()) {
+    const auto point = mesh.points_of(leaf);
+    for (const std::uint32_t p : point) {
+      if (pilot[p] != VertexLightmap::kNone) continue;
+      pilot[p] = p;
+      for (const std::uint32_t q : point)
+        if (q != p && serves(pilot[q], p)) pilot[p] = pilot[q];
+    }
+  }
+  for (std::uint32_t p = 0; p < pilot.size(); ++p)
+    if (pilot[p] == VertexLightmap::kNone) pilot[p] = p;
+  return pilot;
+}
+
 /// Gathers at points that are new since the last time, in parallel.
 class Gatherer {
  public:
@@ -58,7 +84,9 @@ class Gatherer {
         layers_(layers),
         most_delta_(most_delta_light(problem, options.shortest_edge)),
         worth_(worth_a_gather(mesh, options.most_points)),
-        plans_(pilots_ ? mesh.points().position.size() : 0) {}
+        plans_(pilots_ ? mesh.points().position.size() : 0) {
+    if (pilots_) pilot_of_ = pilots_nearby(mesh, kNearby * options.shortest_edge);
+  }
 
   /// False when the monitor stopped it.
   bool gather(VertexField& field, const Monitor& monitor) {
@@ -71,33 +99,38 @@ class Gatherer {
       if (layers_) lanes->value.resize(end * layers_->lanes());
     field.std_error.resize(end);
     field.known.resize(end);
-    for (std::size_t p = begin; p < end && pilots_; ++p)
-      pilot_of_.push_back(p < plans_.size() ? static_cast<std::uint32_t>(p) : pilot_of_[mesh_.ends(p)[0]]);
-    constexpr std::size_t kBlock = 1024;
-    const auto gathered =
-        parallel_blocks(end - begin, kBlock, 16, "vertices", monitor, [&](std::size_t from, std::size_t to) {
-          unsigned long long rays = 0;
-          LightRow row;
-          for (std::size_t p = begin + from; p < begin + to; ++p)
-            if (is_worth_it(p)) gather_at(p, field, row, rays);
-          return rays;
-        });
-    for (std::size_t p = begin; p < begin + gathered.done; ++p) field.known[p] = is_worth_it(p);
-    field.rays += gathered.rays;
-    return begin + gathered.done == end;
+    for (std::size_t p = pilot_of_.size(); p < end && pilots_; ++p) pilot_of_.push_back(pilot_of_[mesh_.ends(p)[0]]);
+    std::vector<std::uint32_t> pilots, others;
+    for (std::size_t p = begin; p < end; ++p)
+      if (p >= worth_.size() || worth_[p])
+        (pilots_ && pilot_of_[p] == p ? pilots : others).push_back(static_cast<std::uint32_t>(p));
+    return gather_each(pilots, field, monitor) && gather_each(others, field, monitor);
   }
 
  private:
-  bool is_worth_it(std::size_t p) const { return p >= worth_.size() || worth_[p]; }
+  bool gather_each(std::span<const std::uint32_t> points, VertexField& field, const Monitor& monitor) {
+    constexpr std::size_t kBlock = 1024;
+    const auto gathered =
+        parallel_blocks(points.size(), kBlock, 16, "vertices", monitor, [&](std::size_t from, std::size_t to) {
+          unsigned long long rays = 0;
+          LightRow row;
+          for (std::size_t k = from; k < to; ++k) gather_at(points[k], field, row, rays);
+          return rays;
+        });
+    for (const std::uint32_t p : points.first(gathered.done)) field.known[p] = true;
+    field.rays += gathered.rays;
+    return gathered.done == points.size();
+  }
   void gather_at(std::size_t p, VertexField& field, LightRow& row, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();
     GatheredLight mean;
     for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
       const Vec3 n = at.sample_normal[s], x = light_.problem.rays.off_surface(at.sample_position[s], n);
       if (pilots_ && pilot_of_[p] == p && !plans_[p]) plans_[p] = plan_gather(light_, x, n, pattern_, rays);
-      static const GatherPlan kNone;
-      const auto* plan = pilots_ && plans_[pilot_of_[p]] ? &*plans_[pilot_of_[p]] : &kNone;
-      const GatheredLight here = gather_point(light_, x, n, pattern_, *plan, rays, layers_ ? &row : nullptr);
+      GatherPlan own;  // the pilot is not worth a gather itself
+      if (pilots_ && !plans_[pilot_of_[p]]) own = plan_gather(light_, x, n, pattern_, rays);
+      const GatherPlan& plan = pilots_ && plans_[pilot_of_[p]] ? *plans_[pilot_of_[p]] : own;
+      const GatheredLight here = gather_point(light_, x, n, pattern_, plan, rays, layers_ ? &row : nullptr);
       if (layers_)
         add_layers(here, row, *layers_, at.sample_weight[s], lanes_of(field.layers, p),
                    lanes_of(field.delta_layers, p));

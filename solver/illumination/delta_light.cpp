@@ -166,8 +166,8 @@ class PatchSampler {
     const RayScene& rays = problem_.rays;
     Tally tally;
     found_.clear();
-    auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
-      const Spectrum arrives = load.irradiance * rays.glass_transmittance(from, to);
+    auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Spectrum& passes) {
+      const Spectrum arrives = load.irradiance * passes;
       tally.sum += arrives;
       ++tally.visible;
       if (row_) note(load.number, arrives);

@@ -103,28 +103,29 @@ LightSampler::Shares LightSampler::shares(const Vec3& p, const Vec3& n) const {
   return s;
 }
 
-LightSample LightSampler::sample(const Vec3& p, const Vec3& n, double pick, double u, double v,
+LightSample LightSampler::sample(const LightTree::Receiver& at, double pick, double u, double v,
                                  bool bright_patches_only) const {
-  if (bright_patches_only) return on_patch(p, n, pick, u, v, 1);
+  if (bright_patches_only) return on_patch(at, pick, u, v, 1);
+  const Vec3 &p = at.p, &n = at.n;
   const Shares s = shares(p, n);
   const double luminaires_end = s.patches + s.luminaires;
-  if (pick < s.patches) return on_patch(p, n, pick / s.patches, u, v, s.patches);
+  if (pick < s.patches) return on_patch(at, pick / s.patches, u, v, s.patches);
   if (s.luminaires > 0 && (pick < luminaires_end || !(s.suns > 0)))
     return on_luminaire(p, n, (pick - s.patches) / s.luminaires, u, v, s.luminaires);
   if (s.suns > 0) return on_sun(p, n, (pick - luminaires_end) / s.suns, u, v, s.suns);
-  return s.patches > 0 ? on_patch(p, n, pick, u, v, s.patches) : LightSample{};
+  return s.patches > 0 ? on_patch(at, pick, u, v, s.patches) : LightSample{};
 }
 
-LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
-  const LightTree::Choice choice = patches_.choose(p, n, pick);
+LightSample LightSampler::on_patch(const LightTree::Receiver& at, double pick, double u, double v, double share) const {
+  const LightTree::Choice choice = patches_.choose(at, pick);
   if (!(choice.probability > 0)) return {};
   const double probability = share * choice.probability;
   const PatchId q{bright_[choice.light]};
   const Vec3 normal = problem_.patches.normal[q];
   const Vec3 point = point_on_triangle(problem_.patches.corner_positions(q), u, v);
-  const double kernel = point_kernel(p, n, point, normal);
+  const double kernel = point_kernel(at.p, at.n, point, normal);
   if (kernel == 0) return {};
-  const Vec3 d = point - p;
+  const Vec3 d = point - at.p;
   const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
   CLERESTORY_ASSERT(cos_q, >, 0);
   const double weight = kernel * area / probability;
@@ -138,7 +139,7 @@ LightSample LightSampler::on_patch(const Vec3& p, const Vec3& n, double pick, do
 
 LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v,
                                        double share) const {
-  const LightTree::Choice choice = luminaires_.choose(p, n, pick);
+  const LightTree::Choice choice = luminaires_.choose({luminaires_, p, n}, pick);
   if (!(choice.probability > 0)) return {};
   const PlacedLuminaire& luminaire = problem_.lights.luminaires[choice.light];
   const Vec3 q = light_point(luminaire, p, u, v);
@@ -164,18 +165,18 @@ LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, doub
   return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}, sun->mirror};
 }
 
-double LightSampler::density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
+double LightSampler::density(PatchId q, const LightTree::Receiver& at, double distance, double cos_q,
                              bool bright_patches_only) const {
   if (!(cos_q > 0)) return 0;
-  const double share = bright_patches_only ? 1.0 : shares(p, n).patches;
-  return share * patches_.probability(number_of_patch_[q], p, n) * distance * distance /
+  const double share = bright_patches_only ? 1.0 : shares(at.p, at.n).patches;
+  return share * patches_.probability(number_of_patch_[q], at) * distance * distance /
          (cos_q * problem_.patches.area[q]);
 }
 
-double LightSampler::density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d,
+double LightSampler::density(const Hit& hit, const LightTree::Receiver& at, const Vec3& d,
                              bool bright_patches_only) const {
-  if (hit.reflected || !hit.patch.valid() || !is_bright(hit.patch)) return 0;
-  return density(hit.patch, p, n, hit.distance, -dot(problem_.patches.normal[hit.patch], d), bright_patches_only);
+  if (!can_choose(hit)) return 0;
+  return density(hit.patch, at, hit.distance, -dot(problem_.patches.normal[hit.patch], d), bright_patches_only);
 }
 
 Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffort& effort, std::uint64_t key,
@@ -190,9 +191,8 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffo
     E += irradiance;
     if (row && !irradiance.is_black()) row->push_back(RowEntry::of_light(number, irradiance));
   };
-  auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Vec3& from, const Vec3& to) {
-    arrive(load.irradiance * rays.glass_transmittance(from, to), load.number);
-  });
+  auto shadows = shadow_rays<Load>(
+      rays, [&](const Load& load, const Spectrum& passes) { arrive(load.irradiance * passes, load.number); });
   const auto look = [&](const ShadowSegment& way, const Spectrum& irradiance, std::size_t number,
                         std::uint32_t mirror) {
     if (irradiance.is_black()) return;

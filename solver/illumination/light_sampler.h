@@ -45,17 +45,23 @@ class LightSampler {
   const Field& glow() const { return glow_; }
   bool is_bright(PatchId p) const { return has_bright_patches() && number_of_patch_[p] != LightTree::kNone; }
 
-  /// Light chosen by `pick` in [0, 1), and the point (u, v) of it, for receiver point p with normal n. Bright patches
-  /// only when `bright_patches_only`; otherwise patches, luminaires and suns share the choice by their power first.
-  LightSample sample(const Vec3& p, const Vec3& n, double pick, double u, double v, bool bright_patches_only) const;
+  /// A receiver point p with normal n, for all that is asked there.
+  LightTree::Receiver receiver(const Vec3& p, const Vec3& n) const { return {patches_, p, n}; }
 
-  /// Density per solid angle with which sample() would choose, at p with normal n, the direction that ends on the
-  /// bright patch q at `distance`, `cos_q` being the cosine there.
-  double density(PatchId q, const Vec3& p, const Vec3& n, double distance, double cos_q,
+  /// Light chosen by `pick` in [0, 1), and the point (u, v) of it. Bright patches only when `bright_patches_only`;
+  /// otherwise patches, luminaires and suns share the choice by their power first.
+  LightSample sample(const LightTree::Receiver& at, double pick, double u, double v, bool bright_patches_only) const;
+
+  /// Density per solid angle with which sample() would choose the direction that ends on the bright patch q at
+  /// `distance`, `cos_q` being the cosine there.
+  double density(PatchId q, const LightTree::Receiver& at, double distance, double cos_q,
                  bool bright_patches_only) const;
 
-  /// The same where a ray from p along d (unit) ends; 0 when that is no bright patch that shadow rays look for.
-  double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const;
+  /// The same where a ray from there along d (unit) ends; 0 when that is no bright patch that shadow rays look for.
+  double density(const Hit& hit, const LightTree::Receiver& at, const Vec3& d, bool bright_patches_only) const;
+  double density(const Hit& hit, const Vec3& p, const Vec3& n, const Vec3& d, bool bright_patches_only) const {
+    return can_choose(hit) ? density(hit, receiver(p, n), d, bright_patches_only) : 0;
+  }
 
   /// Irradiance at p of luminaires and of the sun: a shadow ray to each luminaire, more to openings that are near.
   /// row: null, or where to add what comes of each.
@@ -63,11 +69,12 @@ class LightSampler {
                        LightRow* row = nullptr) const;
 
  private:
+  bool can_choose(const Hit& hit) const { return !hit.reflected && hit.patch.valid() && is_bright(hit.patch); }
   struct Shares {
     double patches = 0, luminaires = 0, suns = 0;  ///< probabilities, sum 1
   };
   Shares shares(const Vec3& p, const Vec3& n) const;
-  LightSample on_patch(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+  LightSample on_patch(const LightTree::Receiver& at, double pick, double u, double v, double share) const;
   LightSample on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
   LightSample on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
 

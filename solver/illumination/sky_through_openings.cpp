@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "solver/model/random_stream.h"
 #include "solver/openings/openings.h"
@@ -16,7 +17,8 @@ namespace {
 constexpr std::size_t kMostOpenings = 4;  ///< over a patch
 constexpr double kLeastOfBest = 0.05;     ///< of what the best of them can give
 constexpr std::uint32_t kPilotRays = 8;   ///< through an opening
-constexpr double kAfar = 4;               ///< radii, from where on a point of the opening is as good as a direction
+constexpr double kAfar = 1.5;             ///< radii, from where on a point of the opening is as good as a direction
+constexpr double kSmall = 0.1;            ///< of the way to the nearest opening: as its centre, so its corners see
 
 /// A way from a point of the patch into the opening; weight: cosine at the point times solid angle for each share of
 /// the unit square.
@@ -73,6 +75,11 @@ class Patch {
 /// In the order of their numbers.
 std::vector<std::uint32_t> openings_over(std::span<const LightArea> openings, const Patch& patch) {
   std::vector<std::uint32_t> over = areas_over(openings, patch.centre(), patch.normal(), kMostOpenings, kLeastOfBest);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const LightArea& o : openings) nearest = std::min(nearest, length(o.centre - patch.centre()) - o.radius);
+  if (std::ranges::all_of(patch.corners(),
+                          [&](const Vec3& corner) { return length(corner - patch.centre()) < kSmall * nearest; }))
+    return over;
   for (const Vec3& corner : patch.corners())  // all of a patch may see of it is from one corner
     for (const std::uint32_t k : areas_over(openings, corner, patch.normal(), 1, 0)) over.push_back(k);
   std::sort(over.begin(), over.end());
@@ -88,14 +95,15 @@ Spectrum sky_through_openings(const Illumination& light, std::size_t i, std::uin
   const std::span<const LightArea> openings = problem.lights.sky_openings();
   const Patch patch(problem, i);
   looked_at.clear();
+  if (openings.empty() || patch.sees_much_sky(mix_bits(key + 1))) return Spectrum(0.0);
   const std::vector<std::uint32_t> over = openings_over(openings, patch);
-  if (over.empty() || patch.sees_much_sky(mix_bits(key + 1))) return Spectrum(0.0);
 
   // Calls found(direction to the sky, weight) for each of the rays that leave by this opening and by none before it.
-  const auto look = [&](std::uint32_t number, std::uint64_t stream, std::uint32_t count, const auto& found) {
+  const auto look = [&](std::uint32_t number, std::uint64_t stream, std::uint32_t count, bool roughly,
+                        const auto& found) {
     const LightArea& opening = openings[number];
     const Vec3 away = opening.centre - patch.centre();
-    const bool from_afar = dot(away, away) > kAfar * kAfar * opening.radius * opening.radius;
+    const bool from_afar = roughly || dot(away, away) > kAfar * kAfar * opening.radius * opening.radius;
     std::array<Ray, 16> rays;
     std::array<Hit, 16> hits;
     std::array<double, 16> weights;
@@ -123,13 +131,13 @@ Spectrum sky_through_openings(const Illumination& light, std::size_t i, std::uin
   for (const std::uint32_t k : over) {
     looked_at = {k};
     bool any = false;
-    look(k, stream_key(key, k + 1), kPilotRays, [&](const Vec3&, const Spectrum&) { any = true; });
+    look(k, stream_key(key, k + 1), kPilotRays, true, [&](const Vec3&, const Spectrum&) { any = true; });
     if (any) seen.push_back(k);
   }
   looked_at = seen;
   Spectrum E(0.0);
   for (const std::uint32_t k : looked_at)
-    look(k, mix_bits(stream_key(key, k)), kRaysOfOpening, [&](const Vec3& direction, const Spectrum& weight) {
+    look(k, mix_bits(stream_key(key, k)), kRaysOfOpening, false, [&](const Vec3& direction, const Spectrum& weight) {
       const std::uint32_t sky = pack_direction(direction);
       E += light.sky(unpack_direction(sky)) * weight / kRaysOfOpening;
       if (row) row->push_back(RowEntry::of_sky(sky, weight / kRaysOfOpening));

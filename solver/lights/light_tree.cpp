@@ -184,9 +184,16 @@ LightTree::LightTree(std::span<const LightBounds> lights, Falloff falloff, doubl
   builder.build();
 }
 
-LightTree::Receiver LightTree::receiver(const Vec3& p, const Vec3& n) const {
-  const auto f = [](double x) { return static_cast<float>(x); };
-  return {f(p.x * scale_), f(p.y * scale_), f(p.z * scale_), f(n.x), f(n.y), f(n.z)};
+LightTree::Receiver::Receiver(const LightTree& tree, const Vec3& point, const Vec3& normal)
+    : p(point),
+      n(normal),
+      x_(static_cast<float>(p.x * tree.scale_)),
+      y_(static_cast<float>(p.y * tree.scale_)),
+      z_(static_cast<float>(p.z * tree.scale_)),
+      nx_(static_cast<float>(n.x)),
+      ny_(static_cast<float>(n.y)),
+      nz_(static_cast<float>(n.z)) {
+  node_.fill(kNone);
 }
 
 LightTree::Lanes LightTree::importance(const Node& node, const Receiver& at) const {
@@ -198,7 +205,7 @@ LightTree::Lanes LightTree::importance(const Node& node, const Receiver& at) con
   const auto magnitude = [&](Lanes a) { return larger(a, -a); };
   const auto root = [](Lanes a) { return Lanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; };
 
-  const Lanes dx = node.centre_x - at.x, dy = node.centre_y - at.y, dz = node.centre_z - at.z;
+  const Lanes dx = node.centre_x - at.x_, dy = node.centre_y - at.y_, dz = node.centre_z - at.z_;
   const Lanes &hx = node.half_x, &hy = node.half_y, &hz = node.half_z;
   const Lanes &ax = node.axis_x, &ay = node.axis_y, &az = node.axis_z;
   const Lanes ux = magnitude(dx), uy = magnitude(dy), uz = magnitude(dz);
@@ -207,7 +214,7 @@ LightTree::Lanes LightTree::importance(const Node& node, const Receiver& at) con
   const Lanes farthest2 = (ux + hx) * (ux + hx) + (uy + hy) * (uy + hy) + (uz + hz) * (uz + hz);
   // Of the box's highest corner above the receiver's plane, and of p along the axis above the box's lowest corner.
   const Lanes height_p =
-      at.nx * dx + at.ny * dy + at.nz * dz + std::abs(at.nx) * hx + std::abs(at.ny) * hy + std::abs(at.nz) * hz;
+      at.nx_ * dx + at.ny_ * dy + at.nz_ * dz + std::abs(at.nx_) * hx + std::abs(at.ny_) * hy + std::abs(at.nz_) * hz;
   const Lanes height_q = magnitude(ax) * hx + magnitude(ay) * hy + magnitude(az) * hz - (ax * dx + ay * dy + az * dz);
 
   const Lanes cos_p = smaller(height_p / root(nearest2), one);
@@ -223,14 +230,23 @@ LightTree::Lanes LightTree::importance(const Node& node, const Receiver& at) con
   return (height_p > none) & (cos_q > none) ? value : none;
 }
 
-LightTree::Choice LightTree::choose(const Vec3& p, const Vec3& n, double pick) const {
+const LightTree::Shares& LightTree::shares(std::uint32_t node, const Receiver& at) const {
+  const std::size_t place = Receiver::place(node);
+  Shares& kept = at.shares_[place];
+  if (at.node_[place] != node) {
+    const Lanes share = importance(nodes_[node], at);
+    kept = {share, static_cast<double>(share[0]) + share[1] + share[2] + share[3]};
+    at.node_[place] = node;
+  }
+  return kept;
+}
+
+LightTree::Choice LightTree::choose(const Receiver& at, double pick) const {
   if (empty()) return {};
-  const Receiver at = receiver(p, n);
   Choice choice{0, 1};
   while (true) {
     const Node& node = nodes_[choice.light];
-    const Lanes share = importance(node, at);
-    const double sum = static_cast<double>(share[0]) + share[1] + share[2] + share[3];
+    const auto& [share, sum] = shares(choice.light, at);
     if (!(sum > 0)) return {};
     double left = pick * sum;
     std::size_t k = kWidth;
@@ -249,12 +265,10 @@ LightTree::Choice LightTree::choose(const Vec3& p, const Vec3& n, double pick) c
   return choice;
 }
 
-double LightTree::probability(std::uint32_t light, const Vec3& p, const Vec3& n) const {
-  const Receiver at = receiver(p, n);
+double LightTree::probability(std::uint32_t light, const Receiver& at) const {
   double probability = 1;
   for (std::uint32_t slot = slot_of_light_[light]; slot != kNone; slot = slot_of_node_[slot / kWidth]) {
-    const Lanes share = importance(nodes_[slot / kWidth], at);
-    const double sum = static_cast<double>(share[0]) + share[1] + share[2] + share[3];
+    const auto& [share, sum] = shares(slot / kWidth, at);
     if (!(share[slot % kWidth] > 0)) return 0;
     probability *= share[slot % kWidth] / sum;
   }
@@ -263,7 +277,7 @@ double LightTree::probability(std::uint32_t light, const Vec3& p, const Vec3& n)
 
 bool LightTree::reaches(const Vec3& p, const Vec3& n) const {
   if (empty()) return false;
-  const Lanes share = importance(nodes_.front(), receiver(p, n));
+  const Lanes share = importance(nodes_.front(), {*this, p, n});
   return share[0] > 0 || share[1] > 0 || share[2] > 0 || share[3] > 0;
 }
 

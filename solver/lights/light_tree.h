@@ -28,6 +28,12 @@ enum class Falloff { cosine, none };
 /// Source: Conty Estevez & Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018; the bounds
 /// are of boxes here and not of spheres, so that lights in the plane of the receiver weigh nothing.
 class LightTree {
+  using Lanes [[gnu::vector_size(16)]] = float;
+  struct Shares {
+    Lanes of_child;
+    double sum;
+  };
+
  public:
   struct Choice {
     std::uint32_t light = kNone;
@@ -40,10 +46,29 @@ class LightTree {
   LightTree(std::span<const LightBounds> lights, Falloff falloff, double extent);
 
   bool empty() const { return nodes_.empty(); }
+
+  /// A receiver point, where much is asked of the tree: it keeps what nodes were found to give there. For one thread.
+  class Receiver {
+   public:
+    Receiver(const LightTree& tree, const Vec3& point, const Vec3& normal);
+
+    const Vec3 p, n;
+
+   private:
+    friend class LightTree;
+    // The root and what is near it have places of their own, other nodes share the rest.
+    static constexpr std::uint32_t kNearRoot = 16, kShared = 48;
+    static std::size_t place(std::uint32_t node) { return node < kNearRoot ? node : kNearRoot + node % kShared; }
+
+    float x_, y_, z_, nx_, ny_, nz_;
+    mutable std::array<std::uint32_t, kNearRoot + kShared> node_;  ///< whose shares are kept
+    mutable std::array<Shares, kNearRoot + kShared> shares_;
+  };
+
   /// Light chosen by pick in [0, 1); none when no light can shine on p.
-  Choice choose(const Vec3& p, const Vec3& n, double pick) const;
+  Choice choose(const Receiver& at, double pick) const;
   /// Probability with which choose() takes `light`.
-  double probability(std::uint32_t light, const Vec3& p, const Vec3& n) const;
+  double probability(std::uint32_t light, const Receiver& at) const;
   /// Whether any light can shine on p, as far as the children of the root tell.
   bool reaches(const Vec3& p, const Vec3& n) const;
   /// All lights, neighbours in space near each other.
@@ -51,21 +76,17 @@ class LightTree {
 
  private:
   static constexpr std::size_t kWidth = 4;
-  using Lanes [[gnu::vector_size(16)]] = float;
   /// By child, in units of the extent. Float, four at a time: choosing must cost less than the ray it saves.
   struct Node {
     Lanes centre_x, centre_y, centre_z, half_x, half_y, half_z, axis_x, axis_y, axis_z;
     Lanes cos_cone, sin_cone, size2, power;
     std::array<std::uint32_t, kWidth> child;  ///< node, or light with kLeaf
   };
-  struct Receiver {
-    float x, y, z, nx, ny, nz;
-  };
   struct Builder;
   static constexpr std::uint32_t kLeaf = 0x80000000;
 
-  Receiver receiver(const Vec3& p, const Vec3& n) const;
   Lanes importance(const Node& node, const Receiver& at) const;
+  const Shares& shares(std::uint32_t node, const Receiver& at) const;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> slot_of_node_;   ///< 4 * parent + which child

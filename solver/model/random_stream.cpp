@@ -3,15 +3,20 @@
 namespace clerestory {
 namespace {
 
-constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+using Lanes [[gnu::vector_size(16)]] = std::uint32_t;  ///< by dimension
+
+template <class Bits>
+constexpr Bits reverse_bits(Bits x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
   x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
-  return __builtin_bswap32(x);
+  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  return (x >> 16) | (x << 16);
 }
 
 /// Scrambles bit k by a hash of the bits below it: an Owen scramble of the reversed number.
-constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+template <class Bits>
+constexpr Bits scramble_reversed(Bits x, Bits seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
@@ -20,15 +25,16 @@ constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+template <class Bits>
+constexpr Bits owen_scramble(Bits x, Bits seed) {
   return reverse_bits(scramble_reversed(reverse_bits(x), seed));
 }
 
-/// Sobol points of dimensions 1 to 3 (dimension 0 is the bit reversal) for each value of each byte of the index; a
-/// point is the exclusive or over its bytes. From primitive polynomials of degree 1, 2, 3 with initial numbers {1}, {1,
-/// 3}, {1, 3, 1} of the new-joe-kuo-6 table.
+/// Sobol points for each value of each byte of the index; a point is the exclusive or over its bytes. Dimension 0 is
+/// the bit reversal, the others are from primitive polynomials of degree 1, 2, 3 with initial numbers {1}, {1, 3}, {1,
+/// 3, 1} of the new-joe-kuo-6 table.
 struct SobolTable {
-  std::uint32_t x[4][256][3];  ///< by byte, its value, dimension - 1
+  Lanes x[4][256];  ///< by byte, its value
 };
 
 SobolTable make_table() {
@@ -52,8 +58,10 @@ SobolTable make_table() {
     for (int byte = 0; byte < 4; ++byte)
       for (int value = 0; value < 256; ++value)
         for (int bit = 0; bit < 8; ++bit)
-          if (value >> bit & 1) table.x[byte][value][dim] ^= v[8 * byte + bit];
+          if (value >> bit & 1) table.x[byte][value][dim + 1] ^= v[8 * byte + bit];
   }
+  for (std::uint32_t byte = 0; byte < 4; ++byte)
+    for (std::uint32_t value = 0; value < 256; ++value) table.x[byte][value][0] = reverse_bits(value << 8 * byte);
   return table;
 }
 
@@ -64,14 +72,13 @@ const SobolTable kTable = make_table();
 std::array<double, 4> sobol4(std::uint32_t index, std::uint64_t key) {
   const auto key_low = static_cast<std::uint32_t>(key), key_high = static_cast<std::uint32_t>(key >> 32);
   const std::uint32_t i = owen_scramble(index, key_low);  // shuffles the order within every power of two
-  std::uint32_t x[4] = {reverse_bits(i), 0, 0, 0};
-  for (int byte = 0; byte < 4; ++byte)
-    for (int dim = 0; dim < 3; ++dim) x[dim + 1] ^= kTable.x[byte][i >> (8 * byte) & 255][dim];
+  const Lanes x = kTable.x[0][i & 255] ^ kTable.x[1][i >> 8 & 255] ^ kTable.x[2][i >> 16 & 255] ^ kTable.x[3][i >> 24];
+  Lanes seed;
+  for (std::uint32_t dim = 0; dim < 4; ++dim)
+    seed[dim] = static_cast<std::uint32_t>(mix_bits(key + 0x9e3779b97f4a7c15ULL * (dim + 1)) ^ key_high);
+  const Lanes scrambled = owen_scramble(x, seed);
   std::array<double, 4> u;
-  for (std::uint32_t dim = 0; dim < 4; ++dim) {
-    const auto seed = static_cast<std::uint32_t>(mix_bits(key + 0x9e3779b97f4a7c15ULL * (dim + 1)) ^ key_high);
-    u[dim] = static_cast<double>(owen_scramble(x[dim], seed)) * 0x1p-32;
-  }
+  for (std::uint32_t dim = 0; dim < 4; ++dim) u[dim] = static_cast<double>(scrambled[dim]) * 0x1p-32;
   return u;
 }
 

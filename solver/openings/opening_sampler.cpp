@@ -25,12 +25,15 @@ LightBounds bounds_of(const LightArea& opening) {
 
 OpeningSampler::OpeningSampler(std::vector<LightArea> openings, double extent) : openings_(std::move(openings)) {
   std::vector<LightBounds> bounds;
-  for (const LightArea& opening : openings_) bounds.push_back(bounds_of(opening));
+  for (const LightArea& opening : openings_) {
+    bounds.push_back(bounds_of(opening));
+    spheres_.push_back({opening.centre, opening.normal, opening.radius * opening.radius});
+  }
   tree_ = LightTree(bounds, Falloff::cosine, extent);
 }
 
 OpeningSampler::Sample OpeningSampler::sample(const Vec3& p, const Vec3& n, double pick, double u, double v) const {
-  const LightTree::Choice choice = tree_.choose(p, n, pick);
+  const LightTree::Choice choice = tree_.choose({tree_, p, n}, pick);
   if (!(choice.probability > 0)) return {};
   const LightArea& opening = openings_[choice.light];
   if (!(dot(p - opening.centre, opening.normal) > 0)) return {};
@@ -41,12 +44,13 @@ OpeningSampler::Sample OpeningSampler::sample(const Vec3& p, const Vec3& n, doub
 }
 
 double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d, std::uint32_t but) const {
+  const LightTree::Receiver at(tree_, p, n);
   double sum = 0;
   for (std::uint32_t k = 0; k < openings_.size(); ++k) {
+    if (k == but || !spheres_[k].may_let_out(p, d) || way_out(openings_[k], p, d) < 0) continue;
     const LightArea& opening = openings_[k];
-    if (k == but || way_out(opening, p, d) < 0) continue;
     const double solid_angle = PolygonView(p, n, opening.triangles, opening.corners).solid_angle();
-    if (solid_angle > 0) sum += tree_.probability(k, p, n) / solid_angle;
+    if (solid_angle > 0) sum += tree_.probability(k, at) / solid_angle;
   }
   return sum;
 }

@@ -112,14 +112,29 @@ Ray ray_through(const LightArea& opening, const Vec3& side, std::uint64_t key, s
 
 namespace {
 
-/// Form factor, from afar by the opening's centre.
+/// Form factor, roughly but for slits and from nearby: as of discs around three points of each triangle; from afar
+/// around the centre.
 double about_form_factor(const LightArea& opening, const Vec3& p, const Vec3& n) {
-  constexpr double kAfar = 4;  // radii: 2 % off at most where all of it is in view
-  const Vec3 d = opening.centre - p;
-  const double r2 = dot(d, d), above = dot(d, n), height = -dot(d, opening.normal);
-  if (r2 < kAfar * kAfar * opening.radius * opening.radius || std::abs(above) < opening.radius)
-    return form_factor(opening, p, n);
-  return above > 0 && height > 0 ? opening.area * above * height / (std::numbers::pi * r2 * r2) : 0;
+  const Vec3 to_centre = opening.centre - p;
+  const double height = -dot(to_centre, opening.normal), above = dot(to_centre, n), r2 = dot(to_centre, to_centre);
+  if (!(height > 0)) return 0;
+  const auto disc = [&](double area, double above_horizon, double square) {
+    return area * std::max(0.0, above_horizon) * height / (square * (std::numbers::pi * square + area));
+  };
+  constexpr double kNear = 1.5, kAfar = 4;  // radii: 2 % off at most where all of it is in view
+  if (r2 > kAfar * kAfar * opening.radius * opening.radius && std::abs(above) > opening.radius)
+    return disc(opening.area, above, r2);
+  if (r2 < kNear * kNear * opening.radius * opening.radius || is_slit(opening)) return form_factor(opening, p, n);
+  double F = 0;
+  for (const auto& [a, b, c] : opening.triangles) {
+    const double area = length(cross(b - a, c - a)) / 2;
+    const Vec3 middle = (a + b + c) / 6 - p;
+    for (const Vec3& corner : {a, b, c}) {
+      const Vec3 d = middle + corner / 2;
+      F += disc(area / 3, dot(d, n), dot(d, d));
+    }
+  }
+  return F;
 }
 
 }  // namespace

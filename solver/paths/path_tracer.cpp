@@ -72,7 +72,7 @@ WayOn way_on(const Illumination& light, const Vec3& p, const Vec3& n, const std:
 /// One shadow ray to a light chosen by u. Of light that bundle rays meet too, the share that is due to shadow rays.
 Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
                    unsigned long long& rays) {
-  const LightSample s = light.sampler.sample(p, n, u[0], u[1], u[2], false);
+  const LightSample s = light.sampler.sample(light.sampler.receiver(p, n), u[0], u[1], u[2], false);
   if (s.irradiance.is_black()) return Spectrum(0.0);
   const double weight =
       s.density > 0 ? balance_heuristic(s.density, density_of_ways(light, p, n, normalized(s.end - p))) : 1.0;

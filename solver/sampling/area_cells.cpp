@@ -165,8 +165,14 @@ AreaCells::AreaCells(int last, std::uint64_t seed) {
 
 namespace {
 
-/// The pilots of a coarser grid, when they find the same everywhere.
-std::optional<AreaPlan> even_view(const AreaCells& cells, int grid, const LookAtPoints& look) {
+/// Of edges that pass so many cells: half of them lie beside it, and each errs by half of its light, either way.
+double error_of_edges(double brightest, std::size_t edges, int grid) {
+  return brightest * std::sqrt(static_cast<double>(edges) / 8) / AreaCells::count(grid);
+}
+
+/// The pilots of a coarser grid, when they find the same everywhere, or what they may have missed does not matter.
+std::optional<AreaPlan> even_view(const AreaCells& cells, int grid, double tolerance, double others,
+                                  const LookAtPoints& look) {
   constexpr double kEven = 0.05;
   const std::uint32_t count = AreaCells::count(grid);
   std::vector<Spectrum> values(count);
@@ -177,19 +183,20 @@ std::optional<AreaPlan> even_view(const AreaCells& cells, int grid, const LookAt
     low = std::min(low, luminous_mean(values[c])), high = std::max(high, luminous_mean(values[c]));
     plan.mean += values[c] / count;
   }
-  return high - low <= kEven * high ? std::optional(std::move(plan)) : std::nullopt;
+  const bool is_enough = high - low <= kEven * high ||
+                         error_of_edges(high - low, count, grid) < tolerance * (luminous_mean(plan.mean) + others);
+  return is_enough ? std::optional(std::move(plan)) : std::nullopt;
 }
 
 }  // namespace
 
 AreaPlan plan_area(const AreaCells& cells, const AreaBudget& budget, double others, const LookAtPoints& look) {
   if (budget.first > 0)
-    if (auto plan = even_view(cells, budget.first - 1, look)) return *plan;
+    if (auto plan = even_view(cells, budget.first - 1, budget.tolerance, others, look)) return *plan;
   Pilots pilots(cells, budget.first, look);
   for (int grid = budget.first; grid < budget.last; ++grid) {
     std::vector<std::uint32_t> edges = pilots.edges(grid);
-    // Half of the cells that an edge passes lie beside it; each errs by half of its light, either way.
-    const double error = pilots.brightest() * std::sqrt(static_cast<double>(edges.size()) / 8) / AreaCells::count(grid);
+    const double error = error_of_edges(pilots.brightest(), edges.size(), grid);
     const AreaPlan so_far = pilots.plan();
     if (edges.empty() || error < budget.tolerance * (luminous_mean(so_far.mean) + others)) return so_far;
     // Each would send four pilots, and four rays that count in the end.

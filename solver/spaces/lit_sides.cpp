@@ -150,7 +150,8 @@ Found look_for_lights(const Problem& problem, const LightSampler& emitters, std:
   }
   for (std::uint32_t k = 0; k < samples && emitters.has_bright_patches(); ++k) {
     const auto u = sobol4(k, key);
-    const LightSample s = emitters.sample(points[k], n, (k + u[2]) / static_cast<double>(samples), u[3], u[0], true);
+    const LightSample s =
+        emitters.sample(emitters.receiver(points[k], n), (k + u[2]) / static_cast<double>(samples), u[3], u[0], true);
     if (s.patch.valid() && !problem.rays.transmittance(points[k], s.end).is_black()) found.glowing.push_back(s.patch);
   }
   return found;

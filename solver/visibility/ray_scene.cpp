@@ -99,6 +99,23 @@ RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float
   return r;
 }
 
+/// Segments as rays of length 1. Without 16 lanes of hardware Embree reads lanes that are not valid too: they must hold
+/// numbers.
+RTCRay16 ray16(const SegmentPacket& s, std::uint16_t active, int* valid) {
+  RTCRay16 packet;
+  for (std::size_t k = 0; k < 16; ++k) {
+    const bool on = (active >> k) & 1;
+    valid[k] = on ? -1 : 0;
+    packet.org_x[k] = on ? s.from_x[k] : 0, packet.org_y[k] = on ? s.from_y[k] : 0;
+    packet.org_z[k] = on ? s.from_z[k] : 0;
+    packet.dir_x[k] = on ? s.to_x[k] - s.from_x[k] : 0, packet.dir_y[k] = on ? s.to_y[k] - s.from_y[k] : 0;
+    packet.dir_z[k] = on ? s.to_z[k] - s.from_z[k] : 1;
+    packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
+    packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
+  }
+  return packet;
+}
+
 }  // namespace
 
 struct RayScene::Impl {
@@ -221,6 +238,15 @@ struct RayScene::Impl {
     }
   }
 
+  /// Bits of the rays of a packet that meet glass before their ends, which it overwrites.
+  unsigned glass_in_the_way(const int* valid, RTCRay16& rays) const {
+    auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    rtcOccluded16(valid, glass.handle, &c, &rays);
+    unsigned met = 0;
+    for (unsigned k = 0; k < 16; ++k) met |= (valid[k] && rays.tfar[k] < 0 ? 1u : 0u) << k;
+    return met;
+  }
+
   /// Product of the transmittances of the glass met before `far`, each at the angle at which it is met. direction:
   /// unit. Neither end is in a tight place.
   Spectrum through_glass(const Vec3& origin, const Vec3& direction, double far) const {
@@ -326,11 +352,13 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     rtcIntersect16(valid, impl_->opaque.handle, &c, &packet);
+    const std::array<float, 16> distance = std::to_array(packet.ray.tfar);
+    const unsigned by_glass = has_glass() ? impl_->glass_in_the_way(valid, packet.ray) : 0;
     bool starts_tight = false;
     for (std::size_t k = 0; k < count; ++k) {
       Hit& hit = hits[first + k];
       hit = Hit{};
-      hit.distance = hit.first = double{packet.ray.tfar[k]};
+      hit.distance = hit.first = double{distance[k]};
       if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
         hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
       const Ray& sent = rays[first + k];
@@ -347,7 +375,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
         hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{packet.hit.u[k]},
                                      double{packet.hit.v[k]});
       }
-      if (has_glass()) {
+      if ((by_glass >> k) & 1) {
         const Ray& ray = rays[first + k];
         hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
       }
@@ -378,21 +406,20 @@ double RayScene::first_surface(const Ray& ray) const {
   return double{r.ray.tfar};
 }
 
+std::uint16_t RayScene::meets_glass(const SegmentPacket& s, std::uint16_t active) const {
+  if (!has_glass() || !active) return 0;
+  alignas(64) int valid[16];
+  RTCRay16 packet = ray16(s, active, valid);
+  unsigned met = impl_->glass_in_the_way(valid, packet);
+  for (unsigned k = 0; k < 16 && has_tight_places(); ++k)
+    if ((active >> k) & 1 && (is_tight(s.from[k]) || is_tight(s.to[k]))) met |= 1u << k;
+  return static_cast<std::uint16_t>(met);
+}
+
 std::uint16_t RayScene::visible16(const SegmentPacket& s, std::uint16_t active) const {
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
   alignas(64) int valid[16];
-  RTCRay16 packet;
-  // Without 16 lanes of hardware Embree reads lanes that are not valid too: they must hold numbers.
-  for (std::size_t k = 0; k < 16; ++k) {
-    const bool on = (active >> k) & 1;
-    valid[k] = on ? -1 : 0;
-    packet.org_x[k] = on ? s.from_x[k] : 0, packet.org_y[k] = on ? s.from_y[k] : 0;
-    packet.org_z[k] = on ? s.from_z[k] : 0;
-    packet.dir_x[k] = on ? s.to_x[k] - s.from_x[k] : 0, packet.dir_y[k] = on ? s.to_y[k] - s.from_y[k] : 0;
-    packet.dir_z[k] = on ? s.to_z[k] - s.from_z[k] : 1;
-    packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
-    packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
-  }
+  RTCRay16 packet = ray16(s, active, valid);
   rtcOccluded16(valid, impl_->opaque.handle, &c, &packet);
   unsigned visible = 0;
   for (unsigned k = 0; k < 16; ++k) visible |= (packet.tfar[k] >= 0 ? 1u : 0u) << k;

@@ -77,6 +77,8 @@ class RayScene {
 
   /// Bit k is set when nothing opaque blocks segment k; glass is ignored. `active` has a bit for each segment to test.
   std::uint16_t visible16(const SegmentPacket& segments, std::uint16_t active = 0xffff) const;
+  /// Bit k is set where glass may take something of what passes along segment k, for those of `active`.
+  std::uint16_t meets_glass(const SegmentPacket& segments, std::uint16_t active) const;
 
   /// Whether nothing opaque blocks one segment; glass is ignored.
   bool visible(const Vec3& from, const Vec3& to) const;

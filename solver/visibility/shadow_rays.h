@@ -12,7 +12,7 @@
 namespace clerestory {
 
 /// Segments wait until there are sixteen; then those that nothing opaque blocks arrive, in the order in which they were
-/// sent: arrive(load, from, to). What glass takes is left to arrive().
+/// sent: arrive(load, passes), with what glass lets pass.
 ///
 /// Load    what a segment carries.
 template <class Load, class Arrive>
@@ -34,9 +34,11 @@ class ShadowRays {
         visible |= (rays_.visible(packet_.from[k], packet_.to[k]) ? 1u : 0u) << k;
     else
       visible = rays_.visible16(packet_, static_cast<std::uint16_t>((1u << count_) - 1));
+    const unsigned by_glass = rays_.meets_glass(packet_, static_cast<std::uint16_t>(visible));
     for (; visible; visible &= visible - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(visible));
-      arrive_(loads_[k], packet_.from[k], packet_.to[k]);
+      arrive_(loads_[k],
+              (by_glass >> k) & 1 ? rays_.glass_transmittance(packet_.from[k], packet_.to[k]) : Spectrum(1.0));
     }
     count_ = 0;
   }

@@ -89,7 +89,7 @@ Mean mean(int count, const F& f) {
 
 LightSample draw(const LightSampler& sampler, const Place& at, RandomStream& random, bool bright_patches_only) {
   const double pick = random.uniform(), u = random.uniform(), v = random.uniform();
-  return sampler.sample(at.p, at.n, pick, u, v, bright_patches_only);
+  return sampler.sample(sampler.receiver(at.p, at.n), pick, u, v, bright_patches_only);
 }
 
 TEST(LightTree, ProbabilitiesSumToOneWhereverLightCanReach) {
@@ -109,7 +109,7 @@ TEST(LightTree, ProbabilitiesSumToOneWhereverLightCanReach) {
     int reached = 0;
     for (const Place& at : places(20)) {
       double sum = 0;
-      for (std::uint32_t l = 0; l < lights.size(); ++l) sum += tree.probability(l, at.p, at.n);
+      for (std::uint32_t l = 0; l < lights.size(); ++l) sum += tree.probability(l, {tree, at.p, at.n});
       // A node may promise light that none of its children then has: what is left over is nobody's.
       EXPECT_LE(sum, 1 + 1e-9);
       if (sum == 0) continue;
@@ -117,7 +117,7 @@ TEST(LightTree, ProbabilitiesSumToOneWhereverLightCanReach) {
       double wasted = 0;
       constexpr int kPicks = 4096;
       for (int k = 0; k < kPicks; ++k)
-        wasted += tree.choose(at.p, at.n, (k + 0.5) / kPicks).probability == 0 ? 1.0 / kPicks : 0.0;
+        wasted += tree.choose({tree, at.p, at.n}, (k + 0.5) / kPicks).probability == 0 ? 1.0 / kPicks : 0.0;
       // Equal steps of pick in each light's interval: off by less than a step each side of the few gaps.
       EXPECT_NEAR(sum + wasted, 1, 0.01 * (1 + (count > 100 ? 1 : 0))) << count;
     }
@@ -143,8 +143,8 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
       for (const Vec3& x : c) whole = whole && dot(at.n, x - at.p) > 0;
       if (!whole) continue;  // samples of half-hidden patches are not all valid
       const double distance = 1, cos_q = 1;
-      const double expected =
-          kDraws * patches.area[i] * lit.sampler.density(PatchId{i}, at.p, at.n, distance, cos_q, true);
+      const double expected = kDraws * patches.area[i] *
+                              lit.sampler.density(PatchId{i}, lit.sampler.receiver(at.p, at.n), distance, cos_q, true);
       if (expected < 10) continue;
       chi_square += std::pow(chosen[i] - expected, 2) / expected;
       ++classes;
@@ -175,7 +175,8 @@ TEST(LightSampler, DensityIsTheOneOfTheSampleThatWasDrawn) {
         const double lifted = dot(normal, s.end - lit.patches.corner_positions(s.patch)[0]);
         const Vec3 d = s.end - normal * lifted - at.p;
         const double cos_q = -dot(normal, normalized(d));
-        const double density = lit.sampler.density(s.patch, at.p, at.n, length(d), cos_q, bright_patches_only);
+        const double density =
+            lit.sampler.density(s.patch, lit.sampler.receiver(at.p, at.n), length(d), cos_q, bright_patches_only);
         EXPECT_NEAR(density / s.density, 1, 1e-9 / cos_q) << count;
       }
     EXPECT_GT(found, count == 1 ? 20 : 300);
@@ -242,7 +243,7 @@ TEST(LightSampler, WithABundleIrradianceIsExactOnAverageTouchingAndGrazing) {
       const Hit hit = lit.rays.first_hit(lit.patches, {at.p, d});
       if (hit.patch.valid() && lit.sampler.is_bright(hit.patch)) {
         const double bundle = dot(at.n, d) / kPi, cos_q = -dot(lit.patches.normal[hit.patch], d);
-        const double lamp = lit.sampler.density(hit.patch, at.p, at.n, hit.distance, cos_q, true);
+        const double lamp = lit.sampler.density(hit.patch, lit.sampler.receiver(at.p, at.n), hit.distance, cos_q, true);
         E += lit.patches.M[hit.patch][0] * bundle / (bundle + lamp);
       }
       return E;
@@ -263,7 +264,7 @@ TEST(LightSampler, NothingThatCanLightTheReceiverHasNoChance) {
       if (point_kernel(at.p, at.n, x, lit.patches.normal[i]) == 0) continue;
       ++pairs;
       const double r = length(x - at.p), cos_q = dot(lit.patches.normal[i], at.p - x) / r;
-      ASSERT_GT(lit.sampler.density(PatchId{i}, at.p, at.n, r, cos_q, true), 0);
+      ASSERT_GT(lit.sampler.density(PatchId{i}, lit.sampler.receiver(at.p, at.n), r, cos_q, true), 0);
     }
   EXPECT_GT(pairs, 10'000);
 }

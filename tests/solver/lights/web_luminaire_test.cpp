@@ -126,7 +126,7 @@ TEST(WebLuminaire, OneShadowRayOfAPathFindsOnAverageWhatAllRaysOfAGatherFind) {
         constexpr int kRays = 100'000;
         for (int k = 0; k < kRays; ++k) {
           const double pick = random.uniform(), u = random.uniform(), v = random.uniform();
-          const LightSample s = lit.sampler.sample(p, n, pick, u, v, false);
+          const LightSample s = lit.sampler.sample(lit.sampler.receiver(p, n), pick, u, v, false);
           const double E = s.irradiance.is_black() ? 0.0 : (s.irradiance * lit.rays.transmittance(p, s.end))[0];
           sum += E, sum2 += E * E;
         }

@@ -20,8 +20,11 @@ constexpr double kDark = 0.02;
 /// Share of the difference between corners that may hide a shadow which lies between them.
 constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
-/// Shortest edges: so far off the pilot rays of a point tell enough.
-constexpr double kNearby = 4;
+/// Shortest edges: so far off the pilot rays of a point tell enough, where it has nearly the same horizon (cosine).
+constexpr double kNearby = 4, kSameHorizon = 0.95;
+/// The same for each share of the tolerance, of all light but that of sun and luminaires: detail far below what
+/// elements resolve.
+constexpr double kSamePlace = 2.5;
 
 /// The points of the mesh that are worth a gather: all, or so many, those of the largest elements.
 std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
@@ -48,36 +51,35 @@ double most_delta_light(const Problem& problem, double shortest_edge) {
   return flux > 0 ? sun + flux / smallest : std::numeric_limits<double>::infinity();
 }
 
-/// For each point the one that sends pilot rays for it: itself, or one that faces as it does on the same surface, no
-/// further than that.
-std::vector<std::uint32_t> pilots_nearby(const ElementMesh& mesh, double distance) {
-  constexpr double kAlike = 0.95;  // cosine: what lies over the one's horizon lies over the other's
+/// For each point one that stands for it: itself, or one on the same surface that is no further off than that and whose
+/// normal is no more off than by that cosine.
+std::vector<std::uint32_t> stand_ins(const ElementMesh& mesh, double distance, double cosine) {
   const VertexLightmap& at = mesh.points();
-  std::vector<std::uint32_t> pilot(at.position.size(), VertexLightmap::kNone);
+  std::vector<std::uint32_t> stand_in(at.position.size(), VertexLightmap::kNone);
   const auto serves = [&](std::uint32_t q, std::uint32_t p) {
     return q != VertexLightmap::kNone && length(at.position[q] - at.position[p]) <= distance &&
-           dot(at.sample_normal[at.sample_begin[q]], at.sample_normal[at.sample_begin[p]]) > kAlike;
+           dot(at.sample_normal[at.sample_begin[q]], at.sample_normal[at.sample_begin[p]]) > cosine;
   };
   for (const std::uint32_t leaf : mesh.leaves()) {
     const auto point = mesh.points_of(leaf);
     for (const std::uint32_t p : point) {
-      if (pilot[p] != VertexLightmap::kNone) continue;
-      pilot[p] = p;
+      if (stand_in[p] != VertexLightmap::kNone) continue;
+      stand_in[p] = p;
       for (const std::uint32_t q : point)
-        if (q != p && serves(pilot[q], p)) pilot[p] = pilot[q];
+        if (q != p && serves(stand_in[q], p)) stand_in[p] = stand_in[q];
     }
   }
-  for (std::uint32_t p = 0; p < pilot.size(); ++p)
-    if (pilot[p] == VertexLightmap::kNone) pilot[p] = p;
-  return pilot;
+  for (std::uint32_t p = 0; p < stand_in.size(); ++p)
+    if (stand_in[p] == VertexLightmap::kNone) stand_in[p] = p;
+  return stand_in;
 }
 
 /// Gathers at points that are new since the last time, in parallel.
 class Gatherer {
  public:
-  Gatherer(const Problem& problem, const Field& B, const ElementMesh& mesh, const FieldOptions& options,
-           const RowLight* layers, const Monitor& monitor)
-      : light_(gather_illumination_by_slits(problem, B, options.seed, monitor)),
+  Gatherer(const Problem& problem, const Field& B, const SlitLight& slit_light, const ElementMesh& mesh,
+           const FieldOptions& options, const RowLight* layers, const Monitor& monitor)
+      : light_(gather_illumination_by_slits(problem, B, slit_light, options.seed, monitor)),
         pattern_(options.quality, options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
@@ -85,7 +87,8 @@ class Gatherer {
         most_delta_(most_delta_light(problem, options.shortest_edge)),
         worth_(worth_a_gather(mesh, options.most_points)),
         plans_(pilots_ ? mesh.points().position.size() : 0) {
-    if (pilots_) pilot_of_ = pilots_nearby(mesh, kNearby * options.shortest_edge);
+    if (pilots_) pilot_of_ = stand_ins(mesh, kNearby * options.shortest_edge, kSameHorizon);
+    same_as_ = stand_ins(mesh, kSamePlace * options.tolerance * options.shortest_edge, VertexLightmap::kAlike);
   }
 
   /// False when the monitor stopped it.
@@ -100,21 +103,35 @@ class Gatherer {
     field.std_error.resize(end);
     field.known.resize(end);
     for (std::size_t p = pilot_of_.size(); p < end && pilots_; ++p) pilot_of_.push_back(pilot_of_[mesh_.ends(p)[0]]);
-    std::vector<std::uint32_t> pilots, others;
-    for (std::size_t p = begin; p < end; ++p)
-      if (p >= worth_.size() || worth_[p])
-        (pilots_ && pilot_of_[p] == p ? pilots : others).push_back(static_cast<std::uint32_t>(p));
-    return gather_each(pilots, field, monitor) && gather_each(others, field, monitor);
+    std::vector<std::uint32_t> pilots, others, alike;
+    for (std::size_t p = begin; p < end; ++p) {
+      if (p < worth_.size() && !worth_[p]) continue;
+      const bool is_pilot = pilots_ && pilot_of_[p] == p;
+      (takes_from_another(p) ? alike : is_pilot ? pilots : others).push_back(static_cast<std::uint32_t>(p));
+    }
+    const auto gather = [&](std::size_t p, LightRow& row, unsigned long long& rays) { gather_at(p, field, row, rays); };
+    const auto take = [&](std::size_t p, LightRow& row, unsigned long long&) { take_light(p, field, row); };
+    return at_each(pilots, field, monitor, gather) && at_each(others, field, monitor, gather) &&
+           at_each(alike, field, monitor, take);
   }
 
  private:
-  bool gather_each(std::span<const std::uint32_t> points, VertexField& field, const Monitor& monitor) {
+  /// Of two points of one place on a flat face, no middles.
+  bool takes_from_another(std::size_t p) const {
+    if (p >= same_as_.size() || same_as_[p] == p) return false;
+    const std::vector<std::uint32_t>& begin = mesh_.points().sample_begin;
+    const auto is_flat = [&](std::size_t q) { return begin[q + 1] - begin[q] == 1; };
+    return worth_[same_as_[p]] && is_flat(p) && is_flat(same_as_[p]);
+  }
+
+  template <class Visit>
+  bool at_each(std::span<const std::uint32_t> points, VertexField& field, const Monitor& monitor, const Visit& visit) {
     constexpr std::size_t kBlock = 1024;
     const auto gathered =
         parallel_blocks(points.size(), kBlock, 16, "vertices", monitor, [&](std::size_t from, std::size_t to) {
           unsigned long long rays = 0;
           LightRow row;
-          for (std::size_t k = from; k < to; ++k) gather_at(points[k], field, row, rays);
+          for (std::size_t k = from; k < to; ++k) visit(points[k], row, rays);
           return rays;
         });
     for (const std::uint32_t p : points.first(gathered.done)) field.known[p] = true;
@@ -138,18 +155,42 @@ class Gatherer {
       mean.delta_light += here.delta_light * at.sample_weight[s];
       mean.std_error += here.std_error * at.sample_weight[s];
     }
-    if (const double delta = luminous_mean(mean.delta_light); delta > most_delta_) {
-      const double too_much = 1 - most_delta_ / delta;
-      mean.E = mean.E - mean.delta_light * too_much;
-      mean.delta_light *= 1 - too_much;
-      if (layers_) {
-        const std::span<double> all = lanes_of(field.layers, p), part = lanes_of(field.delta_layers, p);
-        for (std::size_t l = 0; l < part.size(); ++l) all[l] -= too_much * part[l], part[l] *= 1 - too_much;
-      }
-    }
+    keep_to_most_delta(mean, p, field);
     field.E.set(p, mean.E);
     field.delta_light.set(p, mean.delta_light);
     field.std_error[p] = mean.std_error;
+  }
+
+  /// Its own sun and luminaires, all else from the point that stands for it.
+  void take_light(std::size_t p, VertexField& field, LightRow& row) {
+    const VertexLightmap& at = mesh_.points();
+    const std::size_t s = at.sample_begin[p], q = same_as_[p];
+    GatheredLight here;
+    if (!light_.problem.lights.empty()) {
+      row.clear();
+      const Vec3 n = at.sample_normal[s], x = light_.problem.rays.off_surface(at.sample_position[s], n);
+      here.E = here.delta_light = light_.sampler.delta_light(x, n, {.sun_rays = pattern_.quality().sun_rays},
+                                                             pattern_.sun_key(), layers_ ? &row : nullptr);
+      if (layers_) add_layers(here, row, *layers_, 1, lanes_of(field.layers, p), lanes_of(field.delta_layers, p));
+      keep_to_most_delta(here, p, field);
+    }
+    field.E.set(p, here.E + field.E[q] - field.delta_light[q]);
+    field.delta_light.set(p, here.delta_light);
+    field.std_error[p] = field.std_error[q];
+    if (!layers_) return;
+    const auto to = lanes_of(field.layers, p), all = lanes_of(field.layers, q), part = lanes_of(field.delta_layers, q);
+    for (std::size_t l = 0; l < to.size(); ++l) to[l] += all[l] - part[l];
+  }
+
+  void keep_to_most_delta(GatheredLight& mean, std::size_t p, VertexField& field) const {
+    const double delta = luminous_mean(mean.delta_light);
+    if (!(delta > most_delta_)) return;
+    const double too_much = 1 - most_delta_ / delta;
+    mean.E = mean.E - mean.delta_light * too_much;
+    mean.delta_light *= 1 - too_much;
+    if (!layers_) return;
+    const std::span<double> all = lanes_of(field.layers, p), part = lanes_of(field.delta_layers, p);
+    for (std::size_t l = 0; l < part.size(); ++l) all[l] -= too_much * part[l], part[l] *= 1 - too_much;
   }
 
   const Illumination light_;
@@ -157,9 +198,10 @@ class Gatherer {
   const ElementMesh& mesh_;
   bool pilots_;
   const RowLight* layers_;
-  double most_delta_;                             ///< of delta light at a point, luminous mean [W/m2]
-  std::vector<bool> worth_;                       ///< by point of the mesh as it was at first
-  std::vector<std::uint32_t> pilot_of_;           ///< by point: the one that sent a pilot for it
+  double most_delta_;                    ///< of delta light at a point, luminous mean [W/m2]
+  std::vector<bool> worth_;              ///< by point of the mesh as it was at first
+  std::vector<std::uint32_t> pilot_of_;  ///< by point: the one that sent a pilot for it
+  std::vector<std::uint32_t> same_as_;   ///< by point of the mesh as it was at first: the one that it takes after
   std::vector<std::optional<GatherPlan>> plans_;  ///< by point of the mesh as it was at first
 };
 
@@ -250,7 +292,7 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
 }
 
 VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
-                         const Monitor& monitor, const RowLight* layers) {
+                         const Monitor& monitor, const RowLight* layers, const SlitLight& slit_light) {
   VertexField field;
   if (layers) field.layers.channels = field.delta_layers.channels = static_cast<int>(layers->lanes());
   if (monitor.should_stop()) {
@@ -262,7 +304,7 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
     return field;
   }
   field.E = field.delta_light = Field(0, problem.patches.channels);
-  Gatherer gatherer(problem, B, mesh, options, layers, monitor);
+  Gatherer gatherer(problem, B, slit_light, mesh, options, layers, monitor);
   for (int round = 0;; ++round) {
     field.complete = gatherer.gather(field, monitor);
     if (!field.complete || round == kMostRounds || mesh.points().position.size() >= options.most_points) break;

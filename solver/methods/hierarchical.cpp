@@ -200,7 +200,10 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   }
   ElementTree tree = build_tree(leaves, before ? guess : glow);
   Illumination light(problem, glow);
-  if (before && quality.tells_slit_gains) light.slit_gains = find_slit_gains(problem, guess, options.seed, monitor);
+  if (before && quality.tells_slit_gains) {
+    out.solution.slit_light = find_slit_light(problem, options.seed, monitor);
+    light.slit_gains = slit_gains(problem, guess, out.solution.slit_light, options.seed);
+  }
   const auto receivers = static_cast<double>(std::min(n, kMostReceivers));
   for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;

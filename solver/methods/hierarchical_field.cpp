@@ -282,8 +282,8 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
     kept = {};
   }
   const Problem transport{coarse.elements, problem.rays, problem.lights};
-  VertexField field =
-      gather_field(transport, coarse.solution.B, mesh, options.vertices, monitor, of_layers ? &*of_layers : nullptr);
+  VertexField field = gather_field(transport, coarse.solution.B, mesh, options.vertices, monitor,
+                                   of_layers ? &*of_layers : nullptr, coarse.solution.slit_light);
   if (options.elements.debug) view_errors(mesh, field, options.elements.debug->error);
 
   Solution solution = std::move(coarse.solution);

@@ -6,6 +6,7 @@
 
 #include "solver/model/channels.h"
 #include "solver/model/monitor.h"
+#include "solver/model/slit_light.h"
 
 namespace clerestory {
 
@@ -43,6 +44,7 @@ struct Solution {
   std::size_t clusters = 0, links = 0;  ///< of the hierarchy, where there is one
   double flux_per_ray = 0;              ///< carried by a ray of a shot; sets the noise of shooting [W]
   std::vector<std::string> log;         ///< a line a round, for --verbose
+  SlitLight slit_light;                 ///< where the method needed to know it
   std::string stopped_at;  ///< of a run that was stopped: which of its rounds the result is, in the log's words
 };
 

@@ -109,8 +109,8 @@ PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, 
   if (options.method == Method::path)
     return trace_paths_at(Illumination(problem), count, point_of, paths, stream_key(options.seed, stream), stage,
                           monitor);
-  return gather_at(gather_illumination_by_slits(problem, solution.B, options.seed, monitor), count, point_of,
-                   GatherPattern(quality, options.seed), stage, monitor);
+  return gather_at(gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor), count,
+                   point_of, GatherPattern(quality, options.seed), stage, monitor);
 }
 
 /// What stopped solves take to show a rough value at their sensors, when they are more than take that long.
@@ -209,8 +209,8 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
     patient.progress = monitor.progress;
     if (points.size() > kQuickSensors) patient.deadline = std::chrono::steady_clock::now() + kTimeForSensors;
     const GatherPattern rough(effort(Accuracy::draft, options.tighten).sensors, options.seed);
-    at_points = gather_at(gather_illumination_by_slits(problem, solution.B, options.seed, patient), points.size(),
-                          point_of, rough, "sensors", patient);
+    at_points = gather_at(gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, patient),
+                          points.size(), point_of, rough, "sensors", patient);
   }
   require_sound(at_points.E, "irradiance at the sensors");
   return at_points;

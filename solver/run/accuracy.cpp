@@ -43,7 +43,7 @@ constexpr Effort kStandard{
     .vertex_tolerance = 0.05,
     .shortest_edge = 1.0 / 8,
     .most_points = 400'000,
-    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 128, .sun_rays = 16},
+    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 32, .sun_rays = 16},
     .sensors = {.bundle = {16, 256, 2048}, .area = {2, 6, 0.003, 8192}, .bright_rays = 256, .sun_rays = 32},
     .gathers_vertices = true,
     .direct = {.shadow_rays = 16, .edge_rays = 256, .sky_rays = 256},

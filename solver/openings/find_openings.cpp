@@ -61,8 +61,11 @@ class Judge {
 
   /// Turns the normal into the darker room. returns whether it is much darker than the other one.
   bool judge_slit(LightArea& o, std::uint64_t key) const {
+    int dark = 0;  // the first so many rays, to either side, found nothing
     for (const int count : {kFewRays, kRays, kManyRays}) {
-      Brightness front = brightness_from(o, o.normal, count, key), back = brightness_from(o, -o.normal, count, key + 2);
+      Brightness front = brightness_from(o, o.normal, dark, count, key),
+                 back = brightness_from(o, -o.normal, dark, count, key + 2);
+      if (front.lit == 0 && back.lit == 0) dark = count;
       if (is_darker(back, front)) {
         turn(o);
         std::swap(front, back);
@@ -112,14 +115,14 @@ class Judge {
   }
 
   /// What is seen on one side of a slit, by light that has met four surfaces at most and did not come through the slit
-  /// itself.
+  /// itself. dark: of the count, rays that are known to find nothing.
   struct Brightness {
     double mean = 0;  ///< radiance
     int lit = 0;      ///< ways that found any light
   };
-  Brightness brightness_from(const LightArea& o, const Vec3& side, int count, std::uint64_t key) const {
+  Brightness brightness_from(const LightArea& o, const Vec3& side, int dark, int count, std::uint64_t key) const {
     Brightness found;
-    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count * kWalks); ++k) {
+    for (auto k = static_cast<std::uint32_t>(dark * kWalks); k < static_cast<std::uint32_t>(count * kWalks); ++k) {
       const double L = walk(o, ray_through(o, side, key, k, rays_.lift()), stream_key(key, k));
       found.mean += L / (count * kWalks);
       found.lit += L > 0;

@@ -22,6 +22,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // By judgement: they decide who finds which light, and bias nothing.
 constexpr std::size_t kMuchBright = 3;  ///< of 16 rays around
+constexpr double kLittle = 0.1;         ///< of it
 constexpr double kFoundAnyway = 1.5;    ///< of what these met: no more light that is hard to meet
 constexpr double kNarrow = 4;  ///< times the bundle's density of directions: what shadow rays find, and it hardly
 constexpr double kWorthAShare = 0.001;  ///< of all light at a point, else it is left to chance
@@ -130,8 +131,8 @@ bool misses_bright_patches(const Illumination& light, const Vec3& p, const Vec3&
     ++rays;
   }
   shadows.trace();
-  if (!(wide + narrow > 0)) return light.sky.dark();  // all the light there is comes from somewhere
-  if (wide + narrow < kFoundAnyway * met) return false;
+  if (wide + narrow < kFoundAnyway * met && narrow < kLittle * met) return false;
+  if (!(narrow > 0)) return light.sky.dark();  // all the light there is comes from somewhere
   return narrow > kWorthAShare * (others + wide + narrow);
 }
 
@@ -181,17 +182,19 @@ std::array<Hit, 16> look_around(const Illumination& light, const Vec3& p, const 
   return met;
 }
 
-/// Irradiance of bright patches outside of bright areas that rays around met, luminous mean; 0 where too few met any.
+/// Irradiance of bright patches outside of bright areas that rays around met, luminous mean, as if each had brought the
+/// median: one may have met a lamp by chance. 0 where too few met any.
 double wide_bright_light(const Illumination& light, std::span<const Hit> met) {
-  double sum = 0;
-  std::size_t bright = 0;
+  std::vector<double> bright;
   for (const Hit& hit : met) {
-    if (!hit.patch.valid() || !light.sampler.is_bright(hit.patch)) continue;
+    if (hit.reflected || !hit.patch.valid() || !light.sampler.is_bright(hit.patch)) continue;
     if (light.bright_areas.of(hit.patch) != BrightAreas::kNone) continue;
-    ++bright;
-    sum += luminous_mean(light.sampler.glow()[hit.patch] * hit.transmittance);
+    bright.push_back(luminous_mean(light.sampler.glow()[hit.patch] * hit.transmittance));
   }
-  return bright >= kMuchBright ? sum / static_cast<double>(met.size()) : 0;
+  if (bright.size() < kMuchBright) return 0;
+  const auto middle = bright.begin() + static_cast<std::ptrdiff_t>((bright.size() - 1) / 2);
+  std::nth_element(bright.begin(), middle, bright.end());
+  return *middle * static_cast<double>(bright.size()) / static_cast<double>(met.size());
 }
 
 std::size_t share_of(const RayShares& shares, const RayBudget& budget, int stratum) {
@@ -424,7 +427,9 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   // Light at the point, as far as it is known: what is small beside it need not be known well.
   double known = light.bright_areas.ambient;
   if (!light.problem.lights.empty())
-    known += luminous_mean(light.sampler.delta_light(p, n, {.sun_rays = 4, .opening_rays = 4}, pattern.sun_key()));
+    plan.delta_light =
+        luminous_mean(light.sampler.delta_light(p, n, {.sun_rays = 4, .opening_rays = 4}, pattern.sun_key()));
+  known += plan.delta_light;
   const std::array<Hit, 16> around = look_around(light, p, frame, pattern, rays);
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, std::vector<std::uint32_t>& numbers,
                            std::vector<AreaPlan>& plans) {

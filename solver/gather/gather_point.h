@@ -24,6 +24,7 @@ using RayShares = std::vector<std::uint8_t>;
 /// is biased; the plan serves points nearby too.
 struct GatherPlan {
   RayShares bundle;
+  double delta_light = 0;  ///< at its point, luminous mean [W/m2]: it needs no care for what is little beside that
   bool looks_for_bright_patches = true;               ///< by shadow rays; else bright patches are left to the bundle
   std::vector<std::uint32_t> openings, bright_areas;  ///< looked at by rays of their own
   std::vector<AreaPlan> opening_plans, bright_area_plans;  ///< of each of them; values are pi times the radiance [W/m2]

@@ -22,6 +22,8 @@ constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
 /// Shortest edges: so far off the pilot rays of a point tell enough, where it has nearly the same horizon (cosine).
 constexpr double kNearby = 4, kSameHorizon = 0.95;
+/// Of the sun and luminaires at that point: where there is less of them, what is little beside them is not.
+constexpr double kInShade = 0.5;
 /// The same for each share of the tolerance, of all light but that of sun and luminaires: detail far below what
 /// elements resolve.
 constexpr double kSamePlace = 2.5;
@@ -107,7 +109,7 @@ class Gatherer {
     for (std::size_t p = begin; p < end; ++p) {
       if (p < worth_.size() && !worth_[p]) continue;
       const bool is_pilot = pilots_ && pilot_of_[p] == p;
-      (takes_from_another(p) ? alike : is_pilot ? pilots : others).push_back(static_cast<std::uint32_t>(p));
+      (is_pilot ? pilots : takes_from_another(p) ? alike : others).push_back(static_cast<std::uint32_t>(p));
     }
     const auto gather = [&](std::size_t p, LightRow& row, unsigned long long& rays) { gather_at(p, field, row, rays); };
     const auto take = [&](std::size_t p, LightRow& row, unsigned long long&) { take_light(p, field, row); };
@@ -147,7 +149,11 @@ class Gatherer {
       GatherPlan own;  // the pilot is not worth a gather itself
       if (pilots_ && !plans_[pilot_of_[p]]) own = plan_gather(light_, x, n, pattern_, rays);
       const GatherPlan& plan = pilots_ && plans_[pilot_of_[p]] ? *plans_[pilot_of_[p]] : own;
-      const GatheredLight here = gather_point(light_, x, n, pattern_, plan, rays, layers_ ? &row : nullptr);
+      GatheredLight here = gather_point(light_, x, n, pattern_, plan, rays, layers_ ? &row : nullptr);
+      if (pilot_of_.size() > p && pilot_of_[p] != p && luminous_mean(here.delta_light) < kInShade * plan.delta_light) {
+        own = plan_gather(light_, x, n, pattern_, rays);
+        here = gather_point(light_, x, n, pattern_, own, rays, layers_ ? &row : nullptr);
+      }
       if (layers_)
         add_layers(here, row, *layers_, at.sample_weight[s], lanes_of(field.layers, p),
                    lanes_of(field.delta_layers, p));

@@ -37,6 +37,11 @@ class Patch {
   const std::array<Vec3, 3>& corners() const { return corners_; }
   const Vec3& normal() const { return normal_; }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
+  double radius() const {
+    double farthest = 0;
+    for (const Vec3& corner : corners_) farthest = std::max(farthest, length(corner - centre()));
+    return farthest;
+  }
 
   Aim aim(const LightArea& opening, bool from_afar, const std::array<double, 4>& u) const {
     const Vec3 p = point(u[0], u[1]);
@@ -77,9 +82,7 @@ std::vector<std::uint32_t> openings_over(std::span<const LightArea> openings, co
   std::vector<std::uint32_t> over = areas_over(openings, patch.centre(), patch.normal(), kMostOpenings, kLeastOfBest);
   double nearest = std::numeric_limits<double>::infinity();
   for (const LightArea& o : openings) nearest = std::min(nearest, length(o.centre - patch.centre()) - o.radius);
-  if (std::ranges::all_of(patch.corners(),
-                          [&](const Vec3& corner) { return length(corner - patch.centre()) < kSmall * nearest; }))
-    return over;
+  if (patch.radius() < kSmall * nearest) return over;
   for (const Vec3& corner : patch.corners())  // all of a patch may see of it is from one corner
     for (const std::uint32_t k : areas_over(openings, corner, patch.normal(), 1, 0)) over.push_back(k);
   std::sort(over.begin(), over.end());
@@ -103,7 +106,7 @@ Spectrum sky_through_openings(const Illumination& light, std::size_t i, std::uin
                         const auto& found) {
     const LightArea& opening = openings[number];
     const Vec3 away = opening.centre - patch.centre();
-    const bool from_afar = roughly || dot(away, away) > kAfar * kAfar * opening.radius * opening.radius;
+    const bool from_afar = roughly || length(away) - patch.radius() > kAfar * opening.radius;
     std::array<Ray, 16> rays;
     std::array<Hit, 16> hits;
     std::array<double, 16> weights;

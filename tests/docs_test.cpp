@@ -119,6 +119,7 @@ TEST(Docs, EveryFolderOfSourcesHasAReadmeThatOpensWithAPicture) {
   for (const fs::path& folder : folders) {
     const std::string text = text_of(folder / "README.md");
     ASSERT_FALSE(text.empty()) << folder;
+    EXPECT_TRUE(text.starts_with("# ")) << folder << ": is it still text?";
     const std::size_t picture = std::min(text.find("```"), text.find("!["));
     EXPECT_LT(picture, 900u) << folder;
   }

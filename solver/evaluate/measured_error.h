@@ -39,9 +39,8 @@ struct ErrorEffort {
 
 /// Compares the lightmap (linear between its points) with path tracing at random points of the surfaces.
 ///
-/// rays_spent  by the solution so far: a twentieth as many go into the measurement, a tenth of its time as they are
-/// single
-///             and go anywhere. From counts and not from time, so that every run measures the same.
+/// rays_spent  by the solution so far: a twentieth as many go into the measurement, a tenth of its time, as they are
+///             single and go anywhere. From counts and not from time, so that every run measures the same.
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const ErrorEffort& effort,
                             unsigned long long rays_spent, std::uint64_t seed, const Monitor& monitor = {});
 

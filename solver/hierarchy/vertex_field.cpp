@@ -22,10 +22,10 @@ constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
 /// Shortest edges: so far off the pilot rays of a point tell enough, where it has nearly the same horizon (cosine).
 constexpr double kNearby = 4, kSameHorizon = 0.95;
-/// Of the sun and luminaires at that point: where there is less of them, what is little beside them is not.
+/// Of the sun and luminaires at the point that sent them: where there is less, what is little beside them is not.
 constexpr double kInShade = 0.5;
-/// The same for each share of the tolerance, of all light but that of sun and luminaires: detail far below what
-/// elements resolve.
+/// Shortest edges, for each share of the tolerance: points so near each other have the same light, but for sun and
+/// luminaires. Detail far below what elements resolve.
 constexpr double kSamePlace = 2.5;
 
 /// The points of the mesh that are worth a gather: all, or so many, those of the largest elements.
@@ -53,9 +53,10 @@ double most_delta_light(const Problem& problem, double shortest_edge) {
   return flux > 0 ? sun + flux / smallest : std::numeric_limits<double>::infinity();
 }
 
-/// For each point one that stands for it: itself, or one on the same surface that is no further off than that and whose
-/// normal is no more off than by that cosine.
-std::vector<std::uint32_t> stand_ins(const ElementMesh& mesh, double distance, double cosine) {
+/// For each point worth a gather one that stands for it: itself, or another on the same surface that is no further off
+/// than that and whose normal is no more off than by that cosine.
+std::vector<std::uint32_t> stand_ins(const ElementMesh& mesh, const std::vector<bool>& worth, double distance,
+                                     double cosine) {
   const VertexLightmap& at = mesh.points();
   std::vector<std::uint32_t> stand_in(at.position.size(), VertexLightmap::kNone);
   const auto serves = [&](std::uint32_t q, std::uint32_t p) {
@@ -65,14 +66,12 @@ std::vector<std::uint32_t> stand_ins(const ElementMesh& mesh, double distance, d
   for (const std::uint32_t leaf : mesh.leaves()) {
     const auto point = mesh.points_of(leaf);
     for (const std::uint32_t p : point) {
-      if (stand_in[p] != VertexLightmap::kNone) continue;
+      if (!worth[p] || stand_in[p] != VertexLightmap::kNone) continue;
       stand_in[p] = p;
       for (const std::uint32_t q : point)
         if (q != p && serves(stand_in[q], p)) stand_in[p] = stand_in[q];
     }
   }
-  for (std::uint32_t p = 0; p < stand_in.size(); ++p)
-    if (stand_in[p] == VertexLightmap::kNone) stand_in[p] = p;
   return stand_in;
 }
 
@@ -89,8 +88,8 @@ class Gatherer {
         most_delta_(most_delta_light(problem, options.shortest_edge)),
         worth_(worth_a_gather(mesh, options.most_points)),
         plans_(pilots_ ? mesh.points().position.size() : 0) {
-    if (pilots_) pilot_of_ = stand_ins(mesh, kNearby * options.shortest_edge, kSameHorizon);
-    same_as_ = stand_ins(mesh, kSamePlace * options.tolerance * options.shortest_edge, VertexLightmap::kAlike);
+    if (pilots_) pilot_of_ = stand_ins(mesh, worth_, kNearby * options.shortest_edge, kSameHorizon);
+    same_as_ = stand_ins(mesh, worth_, kSamePlace * options.tolerance * options.shortest_edge, VertexLightmap::kAlike);
   }
 
   /// False when the monitor stopped it.
@@ -113,6 +112,7 @@ class Gatherer {
     }
     const auto gather = [&](std::size_t p, LightRow& row, unsigned long long& rays) { gather_at(p, field, row, rays); };
     const auto take = [&](std::size_t p, LightRow& row, unsigned long long&) { take_light(p, field, row); };
+    field.alike += alike.size();
     return at_each(pilots, field, monitor, gather) && at_each(others, field, monitor, gather) &&
            at_each(alike, field, monitor, take);
   }
@@ -123,7 +123,7 @@ class Gatherer {
     if (p >= same_as_.size() || same_as_[p] == p) return false;
     const std::vector<std::uint32_t>& begin = mesh_.points().sample_begin;
     const auto is_flat = [&](std::size_t q) { return begin[q + 1] - begin[q] == 1; };
-    return worth_[same_as_[p]] && is_flat(p) && is_flat(same_as_[p]);
+    return is_flat(p) && is_flat(same_as_[p]);
   }
 
   template <class Visit>
@@ -140,20 +140,18 @@ class Gatherer {
     field.rays += gathered.rays;
     return gathered.done == points.size();
   }
+
   void gather_at(std::size_t p, VertexField& field, LightRow& row, unsigned long long& rays) {
     const VertexLightmap& at = mesh_.points();
     GatheredLight mean;
     for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
       const Vec3 n = at.sample_normal[s], x = light_.problem.rays.off_surface(at.sample_position[s], n);
       if (pilots_ && pilot_of_[p] == p && !plans_[p]) plans_[p] = plan_gather(light_, x, n, pattern_, rays);
-      GatherPlan own;  // the pilot is not worth a gather itself
-      if (pilots_ && !plans_[pilot_of_[p]]) own = plan_gather(light_, x, n, pattern_, rays);
-      const GatherPlan& plan = pilots_ && plans_[pilot_of_[p]] ? *plans_[pilot_of_[p]] : own;
+      static const GatherPlan kNone;
+      const GatherPlan& plan = pilots_ ? *plans_[pilot_of_[p]] : kNone;
       GatheredLight here = gather_point(light_, x, n, pattern_, plan, rays, layers_ ? &row : nullptr);
-      if (pilot_of_.size() > p && pilot_of_[p] != p && luminous_mean(here.delta_light) < kInShade * plan.delta_light) {
-        own = plan_gather(light_, x, n, pattern_, rays);
-        here = gather_point(light_, x, n, pattern_, own, rays, layers_ ? &row : nullptr);
-      }
+      if (luminous_mean(here.delta_light) < kInShade * plan.delta_light)
+        here = gather_point(light_, x, n, pattern_, rays, layers_ ? &row : nullptr);
       if (layers_)
         add_layers(here, row, *layers_, at.sample_weight[s], lanes_of(field.layers, p),
                    lanes_of(field.delta_layers, p));
@@ -180,7 +178,8 @@ class Gatherer {
       if (layers_) add_layers(here, row, *layers_, 1, lanes_of(field.layers, p), lanes_of(field.delta_layers, p));
       keep_to_most_delta(here, p, field);
     }
-    field.E.set(p, here.E + field.E[q] - field.delta_light[q]);
+    for (int c = 0; c < kMaxChannels; ++c) here.E[c] += std::max(0.0, field.E[q][c] - field.delta_light[q][c]);
+    field.E.set(p, here.E);
     field.delta_light.set(p, here.delta_light);
     field.std_error[p] = field.std_error[q];
     if (!layers_) return;

@@ -28,6 +28,7 @@ struct VertexField {
   Field delta_layers;             ///< part of layers, as delta_light of E
   std::vector<double> std_error;  ///< P, standard error of E, luminous mean
   unsigned long long rays = 0;
+  std::size_t alike = 0;    ///< points that took the light of another beside them, but for sun and luminaires
   std::vector<bool> known;  ///< P, false: not gathered, E holds nothing
   bool complete = true;     ///< false: the monitor stopped it
 };
@@ -39,8 +40,8 @@ struct VertexField {
 /// at least a quarter of that, as a shadow may lie between them. What is less than the noise of its corners is taken
 /// for noise. Shadow edges never agree, so there the shortest edge decides.
 ///
-/// problem  with the patches that B belongs to; mesh: halves of theirs, or of what they are halves of.
-/// layers   null, or layers that sum to this light: what each gives, by the same rays at the same points.
+/// problem     with the patches that B belongs to; mesh: halves of theirs, or of what they are halves of.
+/// layers      null, or layers that sum to this light: what each gives, by the same rays at the same points.
 /// slit_light  of the same patches, or empty: it is found where it is needed.
 /// Threads: same bits for any thread count. Cost: 0.03 (standard) to 0.15 ms (fine) a point and core.
 /// Source of the estimate: Zienkiewicz & Zhu, "A simple error estimator and adaptive procedure for practical

@@ -290,7 +290,8 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   solution.rays += field.rays;
   solution.log.push_back(std::to_string(transport_leaves.size()) + " elements for transport, " +
                          std::to_string(mesh.leaf_count()) + " shown on " +
-                         std::to_string(mesh.points().position.size()) + " points");
+                         std::to_string(mesh.points().position.size()) + " points, " + std::to_string(field.alike) +
+                         " of them as bright as one beside them");
   if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
   const NearLuminaires near = near_luminaires(mesh, transport_leaves, coarse, field, problem.lights);
   correct_flux(coarse, transport_leaves, solution.E, mesh, !near.among_leaves.empty(), field);

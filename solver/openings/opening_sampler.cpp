@@ -27,7 +27,7 @@ OpeningSampler::OpeningSampler(std::vector<LightArea> openings, double extent) :
   std::vector<LightBounds> bounds;
   for (const LightArea& opening : openings_) {
     bounds.push_back(bounds_of(opening));
-    spheres_.push_back({opening.centre, opening.normal, opening.radius * opening.radius});
+    spheres_.emplace_back(opening);
   }
   tree_ = LightTree(bounds, Falloff::cosine, extent);
 }
@@ -47,7 +47,7 @@ double OpeningSampler::preference(const Vec3& p, const Vec3& n, const Vec3& d, s
   const LightTree::Receiver at(tree_, p, n);
   double sum = 0;
   for (std::uint32_t k = 0; k < openings_.size(); ++k) {
-    if (k == but || !spheres_[k].may_let_out(p, d) || way_out(openings_[k], p, d) < 0) continue;
+    if (k == but || !spheres_[k].is_passed(p, d) || way_out(openings_[k], p, d) < 0) continue;
     const LightArea& opening = openings_[k];
     const double solid_angle = PolygonView(p, n, opening.triangles, opening.corners).solid_angle();
     if (solid_angle > 0) sum += tree_.probability(k, at) / solid_angle;

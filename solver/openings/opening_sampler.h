@@ -6,6 +6,7 @@
 
 #include "solver/lights/light_tree.h"
 #include "solver/lights/lights.h"
+#include "solver/openings/openings.h"
 
 namespace clerestory {
 
@@ -33,18 +34,7 @@ class OpeningSampler {
 
  private:
   std::vector<LightArea> openings_;
-  /// Around an opening: all that most rays need to know.
-  struct Sphere {
-    Vec3 centre, normal;
-    double radius2;
-    bool may_let_out(const Vec3& p, const Vec3& d) const {
-      if (dot(d, normal) >= 0) return false;
-      const Vec3 to_centre = centre - p;
-      const double along = dot(to_centre, d);
-      return dot(to_centre, to_centre) - along * along <= radius2;
-    }
-  };
-  std::vector<Sphere> spheres_;
+  std::vector<OpeningSphere> spheres_;  ///< of the openings
   LightTree tree_;
 };
 

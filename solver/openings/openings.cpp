@@ -12,12 +12,8 @@
 namespace clerestory {
 
 double way_out(const LightArea& opening, const Vec3& p, const Vec3& d) {
-  const double towards = -dot(d, opening.normal);
-  if (!(towards > 0)) return -1;
-  const Vec3 to_centre = opening.centre - p;
-  const double along = dot(to_centre, d);
-  if (dot(to_centre, to_centre) - along * along > opening.radius * opening.radius) return -1;  // passes by its sphere
-  const double t = dot(p - opening.centre, opening.normal) / towards;
+  if (!OpeningSphere(opening).is_passed(p, d)) return -1;
+  const double t = dot(p - opening.centre, opening.normal) / -dot(d, opening.normal);
   if (!(t > 0)) return -1;
   const Vec3 x = p + d * t;
   for (const auto& [a, b, c] : opening.triangles) {
@@ -121,7 +117,7 @@ double about_form_factor(const LightArea& opening, const Vec3& p, const Vec3& n)
   const auto disc = [&](double area, double above_horizon, double square) {
     return area * std::max(0.0, above_horizon) * height / (square * (std::numbers::pi * square + area));
   };
-  constexpr double kNear = 1.5, kAfar = 4;  // radii: 2 % off at most where all of it is in view
+  constexpr double kNear = 1.5, kAfar = 4;  // radii; from afar 2 % off at most where all of it is in view
   if (r2 > kAfar * kAfar * opening.radius * opening.radius && std::abs(above) > opening.radius)
     return disc(opening.area, above, r2);
   if (r2 < kNear * kNear * opening.radius * opening.radius || is_slit(opening)) return form_factor(opening, p, n);

@@ -11,6 +11,22 @@
 
 namespace clerestory {
 
+/// Around an opening: all that most rays need to know of it.
+struct OpeningSphere {
+  explicit OpeningSphere(const LightArea& opening)
+      : centre(opening.centre), normal(opening.normal), radius2(opening.radius * opening.radius) {}
+  Vec3 centre, normal;
+  double radius2;
+
+  /// Whether the line from p along d (unit) passes it on the way out.
+  bool is_passed(const Vec3& p, const Vec3& d) const {
+    if (!(dot(d, normal) < 0)) return false;
+    const Vec3 to_centre = centre - p;
+    const double along = dot(to_centre, d);
+    return dot(to_centre, to_centre) - along * along <= radius2;
+  }
+};
+
 /// Where the ray from p along d (unit) passes the opening on its way out [m]; negative: it does not.
 double way_out(const LightArea& opening, const Vec3& p, const Vec3& d);
 

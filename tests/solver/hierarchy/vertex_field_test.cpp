@@ -73,6 +73,31 @@ TEST(GatherField, ATighterToleranceInterpolatesBetter) {
   }
 }
 
+TEST(GatherField, PointsOfOnePlaceTakeEachOthersLightButForLuminaires) {
+  // Elements of 8 cm where none is halved below 60 cm: what is within 15 cm on a face counts as one place.
+  testing::SceneMaker maker = testing::room_with_box();
+  maker.scene().lights.luminaires.push_back({"", {0.8, 0.8, 2}, "", PointLuminaire{Spectrum(3)}});
+  const MeshedRoom room(maker, 0.08);
+  const std::size_t points = room.map.position.size();
+  const auto field = [&](double shortest_edge) {
+    ElementMesh mesh(room.patches, room.map);
+    return gather_field(room.problem(), emission(room.patches), mesh,
+                        {.tolerance = 0.1, .shortest_edge = shortest_edge, .most_points = points, .quality = kFew});
+  };
+  const VertexField each = field(1e-6), shared = field(0.6);
+  EXPECT_EQ(each.alike, 0u);
+  EXPECT_GT(shared.alike, points / 2);
+  EXPECT_LT(shared.rays, each.rays / 2);
+  double squares = 0, mean = 0;
+  for (std::size_t p = 0; p < points; ++p) {
+    ASSERT_EQ(shared.delta_light[p][0], each.delta_light[p][0]) << "its own";
+    ASSERT_GE(shared.E[p][0], shared.delta_light[p][0]);
+    squares += (shared.E[p][0] - each.E[p][0]) * (shared.E[p][0] - each.E[p][0]);
+    mean += each.E[p][0] - each.delta_light[p][0];
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(points)), 0.1 * mean / static_cast<double>(points));
+}
+
 TEST(GatherField, IsTheSameForOneAndTwoThreads) {
   const MeshedRoom room(testing::room_with_box(), 0.6);
   std::vector<double> E[2];

@@ -125,6 +125,28 @@ TEST(LightTree, ProbabilitiesSumToOneWhereverLightCanReach) {
   }
 }
 
+TEST(LightTree, AReceiverThatWasAskedAllThingsAnswersLikeAFreshOne) {
+  std::vector<LightBounds> lights;
+  RandomStream random(4);
+  for (int k = 0; k < 2000; ++k) {  // far more nodes than a receiver keeps
+    const Vec3 p{10 * random.uniform(), 10 * random.uniform(), 10 * random.uniform()};
+    lights.push_back({p, p, {0, 0, -1}, 0, 1 + random.uniform()});
+  }
+  const LightTree tree(lights, Falloff::cosine, 10);
+  for (const Place& at : places(3)) {
+    const LightTree::Receiver asked(tree, at.p, at.n);
+    for (int round = 0; round < 2; ++round)
+      for (std::uint32_t l = 0; l < lights.size(); ++l) {
+        const std::uint32_t light = (l * 997u) % 2000u;
+        ASSERT_EQ(tree.probability(light, asked), tree.probability(light, {tree, at.p, at.n}));
+        const double pick = (l + 0.5) / 2000;
+        const LightTree::Choice one = tree.choose(asked, pick), other = tree.choose({tree, at.p, at.n}, pick);
+        ASSERT_EQ(one.light, other.light);
+        ASSERT_EQ(one.probability, other.probability);
+      }
+  }
+}
+
 TEST(LightTree, ChoosesAsOftenAsItSays) {
   const PatchSet patches = swarm(100);
   const Lit lit(patches);

@@ -42,10 +42,10 @@ struct Estimate {
   AreaPlan plan;
 };
 template <class Value>
-Estimate estimate(const AreaBudget& budget, std::uint64_t seed, const Value& value) {
+Estimate estimate(const AreaBudget& budget, std::uint64_t seed, const Value& value, double others = 0) {
   const AreaCells cells(budget.last, seed);
   Estimate e;
-  e.plan = plan_area(cells, budget, 0, [&](auto points, auto values) {
+  e.plan = plan_area(cells, budget, others, [&](auto points, auto values) {
     e.rays += points.size();
     for (std::size_t k = 0; k < points.size(); ++k) values[k] = Spectrum(value(points[k][0], points[k][1]));
   });
@@ -95,6 +95,23 @@ TEST(PlanArea, IsUnbiasedAndAccurateAlongAStraightEdge) {
   }
   EXPECT_LT(std::sqrt(square), 0.01);  // 8,192 rays all over the square would leave 4 % were they random
   EXPECT_LT(std::abs(mean), 4 * std::sqrt(square / kSeeds));
+}
+
+TEST(PlanArea, WhatIsLittleBesideOtherLightCostsFewRays) {
+  const auto half = [](double u, double v) { return v < 0.3 + 0.4 * u ? 1.0 : 0.0; };
+  constexpr AreaBudget kBudget{.first = 1, .last = 5, .tolerance = 0.003, .most_rays = 8192};
+  constexpr double kOthers = 200;
+  double square = 0;
+  constexpr int kSeeds = 40;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const auto key = static_cast<std::uint64_t>(seed);
+    const Estimate little = estimate(kBudget, key, half, kOthers);
+    EXPECT_EQ(little.rays, 32u);
+    EXPECT_GT(estimate(kBudget, key, half).rays, 10 * little.rays) << "where there is no other light";
+    square += (little.value - 0.5) * (little.value - 0.5) / kSeeds;
+  }
+  EXPECT_LT(std::sqrt(square), kBudget.tolerance * kOthers);
+  EXPECT_GT(std::sqrt(square), 0.001) << "nothing was left out";
 }
 
 TEST(PlanArea, RaysStayWithinTheirBudget) {

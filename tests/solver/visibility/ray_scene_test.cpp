@@ -95,6 +95,27 @@ TEST(RayScene, GlassTakesItsShareOnceForEachPane) {
     EXPECT_NEAR(rays.transmittance({x, x, 0}, {x, x, 1.5})[0], 0.8, 1e-12);
   }
   EXPECT_TRUE(rays.transmittance({0, 0, 0}, {0, 0, 4}).is_black());
+
+  // In packets: past the panes, through one of them, through both, through their shared edges.
+  std::vector<Ray> bundle;
+  SegmentPacket segments;
+  for (std::uint32_t k = 0; k < 16; ++k) {
+    const auto u = sobol4(k, 9);
+    const double x = k % 4 == 3 ? 0 : 4 * u[0] - 2;
+    bundle.push_back({{x, x, 0}, {0, 0, 1}});
+    segments.set(static_cast<int>(k), {x, x, 0}, {x, x, 0.5 + 2 * u[1]});
+  }
+  std::vector<Hit> hits(bundle.size());
+  rays.first_hits(patches, bundle, hits);
+  const unsigned met = rays.meets_glass(segments, 0x7fff);
+  unsigned seen = 0;
+  for (std::size_t k = 0; k < 16; ++k) {
+    EXPECT_EQ(hits[k].transmittance[0], rays.first_hit(patches, bundle[k]).transmittance[0]) << k;
+    if (k < 15 && rays.glass_transmittance(segments.from[k], segments.to[k])[0] < 1) seen |= 1u << k;
+  }
+  EXPECT_EQ(met, seen);
+  EXPECT_NE(seen, 0u);
+  EXPECT_NE(seen, 0x7fffu);
 }
 
 TEST(RayScene, NoRayLeavesAClosedRoomAtAnyScale) {

@@ -1,0 +1,67 @@
+#include "solver/gather/view.h"
+
+#include "solver/sampling/packed_direction.h"
+#include "solver/sampling/two_estimators.h"
+
+namespace clerestory {
+
+void View::look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
+                std::span<Spectrum> values, std::span<RowEntry> found) const {
+  std::array<Ray, 16> rays;
+  std::array<Hit, 16> hits;
+  for (std::size_t k = 0; k < directions.size(); ++k) rays[k] = {p_, directions[k]};
+  const Problem& problem = light_.problem;
+  problem.rays.first_hits(problem.patches, std::span(rays).first(directions.size()), hits);
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const Hit& hit = hits[k];
+    values[k] = Spectrum(0.0);
+    if (!found.empty()) found[k] = {};
+    if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
+    if (hit.escaped()) {
+      const Vec3& direction = hit.direction(rays[k]);
+      values[k] = light_.sky(direction) * std::numbers::pi * hit.transmittance;
+      if (!found.empty()) found[k] = RowEntry::of_sky(pack_direction(direction), std::numbers::pi * hit.transmittance);
+    } else if (hit.patch.valid()) {
+      Spectrum back = light_.sampler.glow()[hit.patch];
+      double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
+      back *= share;
+      if (owner == kNobody && bright_rays_ > 0) {
+        share = balance_heuristic(density[k], bright_rays_ * light_.sampler.density(hit, at_, directions[k], true));
+        back *= share;
+      }
+      values[k] = back * hit.transmittance;
+      if (!found.empty()) found[k] = RowEntry::of_patch(hit.patch, share * hit.transmittance);
+    }
+  }
+}
+
+double View::slit_gain(std::uint32_t number, const Vec3& direction, double distance) const {
+  if (light_.slit_gains.gain.empty()) return 1;
+  const LightArea& slit = light_.problem.lights.openings[number];
+  return light_.slit_gains.of(number, slit, distance - way_out(slit, p_, direction));
+}
+
+std::uint32_t View::owner_of(const Vec3& direction, double distance, PatchId patch) const {
+  const std::uint32_t opening = first_way_out(light_.problem.lights.openings, plan_.openings, p_, direction, distance);
+  if (opening != kNoOpening || !patch.valid() || plan_.bright_areas.empty()) return opening;
+  const std::uint32_t bright_area = light_.bright_areas.of(patch);
+  return std::ranges::find(plan_.bright_areas, bright_area) == plan_.bright_areas.end() ? kNobody
+                                                                                        : kBrightAreas + bright_area;
+}
+
+void AreaView::look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,
+                    std::span<PolygonView::Sight> sights, std::span<RowEntry> found) const {
+  std::array<Vec3, 16> directions;
+  std::array<double, 16> density{};  // counts for rays that belong to nobody only
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    sights[k] = polygon.look(points[k][0], points[k][1]);
+    directions[k] = sights[k].direction;
+  }
+  view.look(std::span(directions).first(points.size()), density, owner, values, found);
+}
+
+int bright_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan) {
+  return plan.looks_for_bright_patches && light.sampler.has_bright_patches() ? pattern.quality().bright_rays : 0;
+}
+
+}  // namespace clerestory

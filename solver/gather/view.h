@@ -1,0 +1,73 @@
+#pragma once
+// What comes back along rays from one point, and whom it belongs to: for plans and gathers.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <span>
+
+#include "solver/gather/gather_point.h"
+#include "solver/lights/light_tree.h"
+#include "solver/openings/openings.h"
+#include "solver/sampling/polygon_view.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+
+/// Owners of rays: openings and, from kBrightAreas on, bright areas, by number.
+inline constexpr std::uint32_t kBrightAreas = 0x80000000, kNobody = kNoOpening;
+
+class View {
+ public:
+  /// bright_rays  shadow rays to bright patches that what the bundle meets of them shares their light with.
+  View(const Illumination& light, const Vec3& p, const Frame& frame, int bright_rays, const GatherPlan& plan)
+      : light_(light),
+        p_(p),
+        frame_(frame),
+        bright_rays_(bright_rays),
+        plan_(plan),
+        at_(light.sampler.receiver(p, frame.n)) {}
+
+  /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
+  /// openings or bright areas, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
+  /// found: empty, or set to what each met, weighted so that it makes these values.
+  void look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
+            std::span<Spectrum> values, std::span<RowEntry> found = {}) const;
+
+  /// Of a ray that meets `patch`, if any, and the first surface at `distance`.
+  std::uint32_t owner_of(const Vec3& direction, double distance, PatchId patch) const;
+
+  const LightTree::Receiver& at() const { return at_; }
+
+ private:
+  double slit_gain(std::uint32_t number, const Vec3& direction, double distance) const;
+
+  const Illumination& light_;
+  Vec3 p_;
+  const Frame& frame_;
+  int bright_rays_;
+  const GatherPlan& plan_;
+  LightTree::Receiver at_;
+};
+
+/// Where to look at an area, how, and who else may own a ray.
+struct AreaView {
+  const View& view;
+  const PolygonView& polygon;
+  std::uint32_t owner;
+
+  /// Up to 16 points.
+  void look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,
+            std::span<PolygonView::Sight> sights, std::span<RowEntry> found = {}) const;
+};
+
+/// Shadow rays to bright patches at a point with that plan.
+int bright_rays(const Illumination& light, const GatherPattern& pattern, const GatherPlan& plan);
+
+/// Of cosine-distributed directions, per solid angle, in the frame of the normal.
+inline double cosine_density(const std::array<float, 3>& d) {
+  return std::max(1e-6, static_cast<double>(d[2])) / std::numbers::pi;
+}
+
+}  // namespace clerestory

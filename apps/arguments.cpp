@@ -22,6 +22,12 @@ std::string positive_number(const std::string& text) {
   return text + " is not a number above 0";
 }
 
+std::string length_or_none(const std::string& text) {
+  double value = 0;
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return {};
+  return text + " is not a length of 0 or more";
+}
+
 std::string thread_number(const std::string& text) {
   int n = 0;
   if (CLI::detail::lexical_cast(text, n) && n >= 0 && n <= 4096) return {};
@@ -77,6 +83,15 @@ void add_choice(CLI::App& command, const std::string& name, std::optional<std::s
 CLI::Option* add_checked_word(CLI::App& command, const std::string& name, std::optional<std::string>& value,
                               const std::function<std::string(const std::string&)>& problem, const std::string& help) {
   return command.add_option(name, value, help)->type_name("NAME")->check(silent(problem));
+}
+
+void add_detail_option(CLI::App& command, std::optional<double>& detail) {
+  command
+      .add_option("--detail", detail,
+                  "merge finer facets of curved parts, by at most so many metres; 0 for none (default: 1/512 of the "
+                  "longest element edge)")
+      ->type_name("M")
+      ->check(silent(length_or_none));
 }
 
 void add_positive_option(CLI::App& command, const std::string& name, std::optional<double>& value,

@@ -37,6 +37,9 @@ void add_choice(CLI::App& command, const std::string& name, std::optional<std::s
 CLI::Option* add_checked_word(CLI::App& command, const std::string& name, std::optional<std::string>& value,
                               const std::function<std::string(const std::string&)>& problem, const std::string& help);
 
+/// --detail
+void add_detail_option(CLI::App& command, std::optional<double>& detail);
+
 /// An option that takes a number above 0, with its unit in the help.
 void add_positive_option(CLI::App& command, const std::string& name, std::optional<double>& value,
                          const std::string& unit, const std::string& help);

@@ -15,6 +15,7 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   if (arguments.oracle) s.solve.oracle = oracle_named(*arguments.oracle);
   if (common.seed) s.solve.seed = *common.seed;
   if (arguments.max_element) s.max_element = arguments.max_element;
+  if (arguments.detail) s.detail = arguments.detail;
   if (arguments.target_error) s.target_error = arguments.target_error;
   if (arguments.time_limit) s.time_limit = arguments.time_limit;
   if (arguments.memory_limit) s.memory_limit = to_memory_size(*arguments.memory_limit);
@@ -33,6 +34,7 @@ std::vector<Figure> as_figures(const Settings& s, int channels, const ReadOption
   if (s.solve.method == Method::hierarchical)
     out.push_back({"oracle", std::string(kOracleNames[static_cast<std::size_t>(s.solve.oracle)])});
   if (s.max_element) out.push_back({"max_element", *s.max_element});
+  if (s.detail) out.push_back({"detail", *s.detail});
   if (s.target_error) out.push_back({"target_error", *s.target_error});
   if (s.time_limit) out.push_back({"time_limit", *s.time_limit});
   if (s.memory_limit) out.push_back({"memory_limit", static_cast<long long>(*s.memory_limit)});

@@ -14,7 +14,7 @@ namespace clerestory {
 /// As typed; empty when not given.
 struct SolveArguments {
   std::optional<std::string> method, accuracy, oracle, channels;
-  std::optional<double> max_element, target_error, time_limit;
+  std::optional<double> max_element, detail, target_error, time_limit;
   std::optional<std::string> memory_limit;
   bool grey = false;
   std::string debug_output;  ///< folder; empty when not asked for

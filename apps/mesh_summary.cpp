@@ -28,6 +28,9 @@ void say_mesh(const MeshReport& r, Console& console) {
   repair(r.t_junctions, "vertices inside another face's edge shared with it");
   repair(r.imprinted_contacts, "lines where surfaces touch or cross made edges of both");
   repair(r.imprinted_outlines, "lines where something ends just off a surface made edges of it");
+  if (r.simplified_parts)
+    console.say("  detail   " + counted(r.simplified_faces, "face") + " of " + counted(r.simplified_parts, "part") +
+                " merged with others, which moved no surface by more than " + rounded(1000 * r.simplified_by) + " mm");
   if (r.boundary_edges || r.non_manifold_edges)
     console.say("  edges    " + grouped(r.boundary_edges) + " of one face, " + grouped(r.non_manifold_edges) +
                 " of more than two (no defects by themselves)");

@@ -28,6 +28,9 @@ void add_mesh_figures(std::vector<Figure>& out, const MeshReport& r) {
   add("t_junctions", count(r.t_junctions));
   add("imprinted_contacts", count(r.imprinted_contacts));
   add("imprinted_outlines", count(r.imprinted_outlines));
+  add("simplified_parts", count(r.simplified_parts));
+  add("simplified_faces", count(r.simplified_faces));
+  add("simplified_by", r.simplified_by);
   add("non_manifold_edges", count(r.non_manifold_edges));
   add("boundary_edges", count(r.boundary_edges));
   add("planar_regions", count(r.planar_regions));

@@ -9,6 +9,7 @@
 #include "meshing/imprint_contacts.h"
 #include "meshing/planar_regions.h"
 #include "meshing/plane_groups.h"
+#include "meshing/simplify.h"
 #include "meshing/subdivide.h"
 #include "meshing/triangle_quality.h"
 #include "solver/model/box.h"
@@ -39,6 +40,12 @@ double asked_element(const Scene& scene, const FaceComplex& complex, const MeshO
     throw InputError(scene.file + text);
   }
   return *options.max_element / complex.size;
+}
+
+/// How far simplification may move a surface, in the working frame: a 64th of the smallest elements, those that are
+/// halved three times.
+double detail_of(const Scene& scene, const FaceComplex& complex, const MeshOptions& options) {
+  return options.detail ? *options.detail / complex.size : asked_element(scene, complex, options) / 512;
 }
 
 /// The one that is in force.
@@ -102,6 +109,7 @@ MeshedScene build_patches(const Scene& scene, const MeshOptions& options, const 
   for (const Tolerance& allowed : kTolerances) {
     report = {};
     complex = clean(scene, allowed, report);
+    simplify(complex, scene.materials, detail_of(scene, complex, options), report);
     count_edges(complex, report);
     groups = group_by_plane(complex);
     const std::vector<Outline> outlines =

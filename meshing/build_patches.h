@@ -12,6 +12,7 @@ namespace clerestory {
 
 struct MeshOptions {
   std::optional<double> max_element;      ///< longest edge [m]; default: chosen so that about target_triangles result
+  std::optional<double> detail{};         ///< no surface is simplified by more [m]; default: by the longest edge
   double target_triangles = 6000;         ///< for the default of max_element; fine detail of the model may need more
   std::optional<double> fit_triangles{};  ///< edges may be longer, until there are about so few triangles
 };

@@ -33,14 +33,6 @@ struct Welder {
   PointIndex index;
 };
 
-bool has_area(const FaceComplex& complex, const std::array<std::uint32_t, 3>& c) {
-  if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return false;
-  const Vec3 a = complex.vertices[c[0]], b = complex.vertices[c[1]], d = complex.vertices[c[2]];
-  const double longest = std::max({length(b - a), length(d - b), length(a - d)});
-  const double height = length(cross(b - a, d - a)) / longest;
-  return height > std::min(complex.allowed.contact, 0.1 * complex.allowed.local_share * longest);
-}
-
 /// What is between coordinates by chance, in the working frame: models whose coordinates are all of single precision
 /// are taken to be rounded to it; all are rounded to the grid.
 double rounding_of(const PolygonSoup& soup, const std::vector<bool>& used, double size) {
@@ -198,10 +190,13 @@ FaceComplex clean(const Scene& scene, const Tolerance& allowed, MeshReport& repo
     bool any = false;
     for (const auto& t : pieces.triangles) {
       const std::array<std::uint32_t, 3> corner{ids[t[0]], ids[t[1]], ids[t[2]]};
-      if (!has_area(complex, corner)) continue;
-      complex.faces.push_back(
-          {corner, soup.material[f], soup.surface[f], {read_at[t[0]], read_at[t[1]], read_at[t[2]]}});
-      any = true;
+      const Face face{corner, soup.material[f], soup.surface[f], {read_at[t[0]], read_at[t[1]], read_at[t[2]]}};
+      if (complex.has_area(corner)) {
+        complex.faces.push_back(face);
+        any = true;
+      } else if (corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0]) {
+        complex.flat.push_back(face);
+      }
     }
     report.input_triangles += pieces.triangles.size();
     if (!any) ++report.degenerate_faces;

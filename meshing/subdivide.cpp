@@ -13,6 +13,7 @@ namespace clerestory {
 namespace {
 
 constexpr double kFinest = 0.2;               ///< angles are bettered down to this share of `longest`
+constexpr double kStrip = 1.0 / 32;           ///< of the finest edge: strips narrower than that stay in one piece
 constexpr double kRadiusToEdge = 1.18;        ///< circumradius / shortest edge = 1 / (2 sin 25 degrees)
 constexpr std::uint32_t kInner = 0x80000000;  ///< ids from here on are a region's own, until the end
 constexpr int kRounds = 24;
@@ -199,6 +200,14 @@ class RegionMesh {
     return true;
   }
 
+  /// Whether p is so near to the line opposite to corner i of f that no halving of it gives well-shaped triangles
+  /// there.
+  bool lies_in_strip(const CdtKernel::Point_2& p, Cdt::Face_handle f, int i) const {
+    const auto &a = f->vertex(cdt_.ccw(i))->point(), &b = f->vertex(cdt_.cw(i))->point();
+    const double twice_area = (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+    return std::abs(twice_area) < kStrip * finest_ * distance(a, b);
+  }
+
   void better(Cdt::Face_handle f) {
     const Shape s = shape_of(f);
     const bool too_long = is_too_long(s);
@@ -233,7 +242,8 @@ class RegionMesh {
           leave = i;
       }
       if (leave < 0) break;
-      if (cdt_.is_constrained({at, leave})) return ask(at, leave, finest_ / 2);
+      if (cdt_.is_constrained({at, leave}))
+        return (too_long || !lies_in_strip(at->vertex(leave)->point(), at, leave)) && ask(at, leave, finest_ / 2);
       const auto next = at->neighbor(leave);
       if (cdt_.is_infinite(next)) return false;
       entered = next->index(at);
@@ -248,7 +258,7 @@ class RegionMesh {
       const auto &a = g->vertex(cdt_.ccw(i))->point(), &b = g->vertex(cdt_.cw(i))->point();
       if ((a.x() - c.x()) * (b.x() - c.x()) + (a.y() - c.y()) * (b.y() - c.y()) >= 0) continue;
       crowded = true;
-      asked |= ask(g, i, finest_ / 2);
+      asked |= (too_long || !lies_in_strip(c, g, i)) && ask(g, i, finest_ / 2);
     }
     if (asked) return true;
     if (crowded && !too_long) return false;
@@ -256,7 +266,7 @@ class RegionMesh {
   }
   /// f is next to flat: only halving a line of its can help.
   bool blocked_beyond_reason(Cdt::Face_handle f, const Shape& s) {
-    return cdt_.is_constrained({f, s.longest_edge}) && ask(f, s.longest_edge, finest_ / 2);
+    return is_too_long(s) && cdt_.is_constrained({f, s.longest_edge}) && ask(f, s.longest_edge, finest_ / 2);
   }
 
   bool insert(const CdtKernel::Point_2& p, Cdt::Face_handle near) {

@@ -43,6 +43,7 @@ struct FaceComplex {
   std::vector<double>
       tolerance;  ///< by vertex: `allowed.contact`, less where small faces meet; a line takes its coarser end's
   std::vector<Face> faces;
+  std::vector<Face> flat;  ///< triangles without area whose corners differ: what they close is closed only with them
   std::vector<Vec3> before_welding;  ///< the model's vertices
   double rounding = 0;  ///< what may be chance between coordinates as they were read: that of their number format
 
@@ -55,6 +56,8 @@ struct FaceComplex {
     tolerance.push_back(tolerance_there);
     return static_cast<std::uint32_t>(vertices.size()) - 1;
   }
+  /// Whether a triangle is higher than what is taken for rounding.
+  bool has_area(const std::array<std::uint32_t, 3>& corner) const;
   double line_tolerance(std::uint32_t a, std::uint32_t b) const { return std::max(tolerance[a], tolerance[b]); }
 };
 

@@ -23,6 +23,7 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
   Lap lap;
   MeshedScene meshed = build_patches(scene,
                                      {.max_element = settings.max_element,
+                                      .detail = settings.detail,
                                       .target_triangles = target_triangles(settings.solve),
                                       .fit_triangles = fit_triangles},
                                      monitor);

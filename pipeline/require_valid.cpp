@@ -90,6 +90,8 @@ void check_settings(const Scene& scene, const Settings& s) {
       refuse(scene, std::string(name) + " = " + rounded(*x) + " is not above 0.");
   };
   positive(s.max_element, "max_element");
+  if (s.detail && !(std::isfinite(*s.detail) && *s.detail >= 0))
+    refuse(scene, "detail = " + rounded(*s.detail) + " is below 0.");
   positive(s.target_error, "target_error");
   positive(s.time_limit, "time_limit");
   if (s.channels && *s.channels != 1 && *s.channels != 3)

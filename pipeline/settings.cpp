@@ -40,6 +40,7 @@ Settings settings_of(const Scene& scene) {
   if (file.oracle) s.solve.oracle = oracle_named(*file.oracle);
   if (file.seed) s.solve.seed = *file.seed;
   s.max_element = file.max_element;
+  s.detail = file.detail;
   s.target_error = file.target_error;
   s.time_limit = file.time_limit;
   s.memory_limit = file.memory_limit;

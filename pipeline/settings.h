@@ -14,6 +14,7 @@ struct Settings {
   SolveOptions solve;
   std::optional<int> channels{};              ///< 1 or 3; empty: what the scene needs
   std::optional<double> max_element{};        ///< longest edge [m]; empty: by accuracy and size
+  std::optional<double> detail{};             ///< surfaces are simplified by no more [m]; empty: by max_element
   std::optional<double> target_error{};       ///< RMS relative [1]
   std::optional<double> time_limit{};         ///< [s]
   std::optional<std::size_t> memory_limit{};  ///< of the whole process [bytes]

@@ -68,6 +68,7 @@ void add_mesh_command(CLI::App& program, Task& task) {
   require_extension(command, "--output", ".vtp");
   add_positive_option(command, "--max-element", arguments->solve.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
+  add_detail_option(command, arguments->solve.detail);
   add_checked_word(command, "--accuracy", arguments->solve.accuracy, problem_with_accuracy,
                    "draft, standard or fine (default: standard)");
   add_common_options(command, arguments->common);

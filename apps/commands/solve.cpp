@@ -161,6 +161,7 @@ void add_solve_command(CLI::App& program, Task& task) {
       ->type_name("SIZE");
   add_positive_option(command, "--max-element", s.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
+  add_detail_option(command, s.detail);
   command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")
       ->type_name("POINTS.csv");
   command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")

@@ -116,6 +116,7 @@ SolverSettings read_settings(const JsonObject& object) {
   settings.oracle = object.choice("oracle", kOracleNames);
   settings.max_element =
       object.number("max_element", {.low = 0, .low_allowed = false, .advice = "it is an edge in metres"});
+  settings.detail = object.number("detail", {.low = 0, .advice = "it is a length in metres"});
   settings.target_error =
       object.number("target_error", {.low = 0, .low_allowed = false, .advice = "it is relative: 0.02 is 2 %"});
   settings.time_limit = object.number("time_limit", {.low = 0, .low_allowed = false, .advice = "it is in seconds"});
@@ -187,9 +188,9 @@ Scene read_scene_file(const std::filesystem::path& file) {
   std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, photometry, channels, scene);
   scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   if (root.has("solver")) {
-    scene.settings = read_settings(JsonObject(
-        root.at("solver"), name + ": solver",
-        {"method", "accuracy", "oracle", "max_element", "target_error", "time_limit", "memory_limit", "seed"}));
+    scene.settings = read_settings(JsonObject(root.at("solver"), name + ": solver",
+                                              {"method", "accuracy", "oracle", "max_element", "detail", "target_error",
+                                               "time_limit", "memory_limit", "seed"}));
   }
   SensorEntries sensors;
   if (root.has("sensors")) sensors = read_sensor_entries(root.at("sensors"), name, folder);

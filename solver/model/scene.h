@@ -42,6 +42,7 @@ struct PolygonSoup {
 struct SolverSettings {
   std::optional<std::string> method, accuracy, oracle;
   std::optional<double> max_element;        ///< [m]
+  std::optional<double> detail;             ///< [m]
   std::optional<double> target_error;       ///< RMS relative [1]
   std::optional<double> time_limit;         ///< [s]
   std::optional<std::size_t> memory_limit;  ///< of the whole process [bytes]

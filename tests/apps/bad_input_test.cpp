@@ -49,6 +49,8 @@ TEST_F(BadUsage, ExitsTwoAndSuggestsTheNearestName) {
     expect_refusal({"solve", scene_, "-o", out_, "--time-limit", value}, 2, {"--time-limit"});
     expect_refusal({"solve", scene_, "-o", out_, "--target-error", value}, 2, {"--target-error"});
   }
+  for (const char* value : {"-0.001", "nan", "inf", "fine", ""})
+    expect_refusal({"solve", scene_, "-o", out_, "--detail", value}, 2, {"--detail", "0 or more"});
   for (const char* value : {"0", "-1", "2Q", "much", "1e99", "nan", ""})
     expect_refusal({"solve", scene_, "-o", out_, "--memory-limit", value}, 2, {"--memory-limit", "2GiB"});
   for (const char* value : {"-1", "two", "100000", "1e99"})

@@ -83,6 +83,7 @@ TEST(SolveScene, RefusesWhatNoFileCouldSay) {
             "position"},
            {[](S s, O) { s.sensors[0].points[0].normal = {}; }, "sensors 'desk'"},
            {[](S, O o) { o.channels = 2; }, "channels = 2"},
+           {[](S, O o) { o.detail = -0.1; }, "detail"},
            {[](S, O o) { o.target_error = -1.0; }, "target_error"},
            {[](S, O o) { o.solve.tighten = -1; }, "tighten"}})
     EXPECT_NE(refusal(spoil).find(word), std::string::npos) << word << ": " << refusal(spoil);

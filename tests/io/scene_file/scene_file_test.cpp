@@ -222,12 +222,13 @@ TEST_F(SceneFile, KeysThatDoNotGoWithAKindOfSensorAreRefused) {
 TEST_F(SceneFile, SolverSettingsAreKept) {
   const SolverSettings s =
       read_with(R"("solver": { "method": "gauss-seidel", "accuracy": "fine", "oracle": "bf", "max_element": 0.25,
-                                     "target_error": 0.01, "time_limit": 30, "seed": 7 })")
+                                     "detail": 0, "target_error": 0.01, "time_limit": 30, "seed": 7 })")
           .settings;
   EXPECT_EQ(s.method, "gauss-seidel");
   EXPECT_EQ(s.accuracy, "fine");
   EXPECT_EQ(s.oracle, "bf");
   EXPECT_EQ(s.max_element, 0.25);
+  EXPECT_EQ(s.detail, 0.0);
   EXPECT_EQ(s.target_error, 0.01);
   EXPECT_EQ(s.time_limit, 30);
   EXPECT_EQ(s.seed, 7u);

@@ -29,10 +29,14 @@ double total_area(const FaceComplex& complex) {
   return area;
 }
 
+/// A mesh of edges up to h has triangles of 0.21 h2 in the mean; area alone decides, so that the choice scales.
+double default_element(const FaceComplex& complex, const MeshOptions& options) {
+  return std::sqrt(total_area(complex) / (0.21 * std::max(1.0, options.target_triangles)));
+}
+
 /// The bound on edges that was asked for, in the working frame.
 double asked_element(const Scene& scene, const FaceComplex& complex, const MeshOptions& options) {
-  // A mesh of edges up to h has triangles of 0.21 h2 in the mean; area alone decides, so that the choice scales.
-  if (!options.max_element) return std::sqrt(total_area(complex) / (0.21 * std::max(1.0, options.target_triangles)));
+  if (!options.max_element) return default_element(complex, options);
   if (!(*options.max_element > 0) || !std::isfinite(*options.max_element)) {
     char text[160];
     std::snprintf(text, sizeof text, ": max_element = %g m is not a length; give one above 0, such as 0.5.",
@@ -43,9 +47,10 @@ double asked_element(const Scene& scene, const FaceComplex& complex, const MeshO
 }
 
 /// How far simplification may move a surface, in the working frame: a 64th of the smallest elements, those that are
-/// halved three times.
+/// halved three times. That longer ones were asked for makes nothing of the model less visible.
 double detail_of(const Scene& scene, const FaceComplex& complex, const MeshOptions& options) {
-  return options.detail ? *options.detail / complex.size : asked_element(scene, complex, options) / 512;
+  if (options.detail) return *options.detail / complex.size;
+  return std::min(asked_element(scene, complex, options), default_element(complex, options)) / 512;
 }
 
 /// The one that is in force.
@@ -109,7 +114,7 @@ MeshedScene build_patches(const Scene& scene, const MeshOptions& options, const 
   for (const Tolerance& allowed : kTolerances) {
     report = {};
     complex = clean(scene, allowed, report);
-    simplify(complex, scene.materials, detail_of(scene, complex, options), report);
+    simplify(complex, scene.materials, detail_of(scene, complex, options), report, monitor);
     count_edges(complex, report);
     groups = group_by_plane(complex);
     const std::vector<Outline> outlines =

@@ -10,6 +10,7 @@
 #include <OpenMesh/Tools/Decimater/ModHausdorffT.hh>
 #include <OpenMesh/Tools/Decimater/ModNormalDeviationT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#include <OpenMesh/Tools/Decimater/Observer.hh>
 
 #include "meshing/fine_parts.h"
 #include "meshing/surface_distance.h"
@@ -32,10 +33,12 @@ struct Traits : OpenMesh::DefaultTraits {
 };
 using PartMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 
+/// Of the two vertices of a collapse: its cost goes with their square.
+constexpr unsigned kMostFacesAround = 64;
 /// No facet loses more of its height in a collapse.
 constexpr double kLeastHeight = 0.25;
 
-/// Collapses that bend a wide facet, or leave one without height, are not allowed.
+/// Collapses that bend a wide facet, leave one without height or crowd a vertex are not allowed.
 template <class MeshT>
 class ModKeepWideT : public OpenMesh::Decimater::ModBaseT<MeshT> {
  public:
@@ -48,6 +51,7 @@ class ModKeepWideT : public OpenMesh::Decimater::ModBaseT<MeshT> {
   }
   float collapse_priority(const CollapseInfo& collapse) override {
     Mesh& mesh = Base::mesh();
+    if (mesh.valence(collapse.v0) + mesh.valence(collapse.v1) > kMostFacesAround) return Base::ILLEGAL_COLLAPSE;
     for (const auto f : mesh.vf_range(collapse.v0)) {
       auto v = mesh.cfv_iter(f);
       std::array<typename MeshT::Point, 3> p, moved;
@@ -72,6 +76,16 @@ class ModKeepWideT : public OpenMesh::Decimater::ModBaseT<MeshT> {
   double wide_ = 0, flat_ = 0;
 };
 
+class StopWhenInterrupted : public OpenMesh::Decimater::Observer {
+ public:
+  explicit StopWhenInterrupted(const Monitor& monitor) : Observer(1000), monitor_(monitor) {}
+  void notify(std::size_t) override {}
+  bool abort() const override { return monitor_.is_interrupted(); }
+
+ private:
+  const Monitor& monitor_;
+};
+
 struct SimplerPart {
   std::vector<Face> faces;
   double moved = 0;
@@ -84,7 +98,8 @@ std::vector<TriangleCorners> places(const FaceComplex& complex, std::span<const 
   return result;
 }
 
-std::optional<SimplerPart> simpler(const FaceComplex& complex, const FinePart& part, double detail) {
+std::optional<SimplerPart> simpler(const FaceComplex& complex, const FinePart& part, double detail,
+                                   const Monitor& monitor) {
   std::vector<Face> original;
   std::vector<std::uint32_t> vertices;  // of the complex, by vertex of the mesh
   for (const std::uint32_t f : part.faces) {
@@ -115,15 +130,18 @@ std::optional<SimplerPart> simpler(const FaceComplex& complex, const FinePart& p
   OpenMesh::Decimater::ModNormalDeviationT<PartMesh>::Handle normals;
   ModKeepWideT<PartMesh>::Handle wide;
   decimater.add(quadric);
-  decimater.add(hausdorff);
-  decimater.add(normals);
   decimater.add(wide);
+  decimater.add(normals);
+  decimater.add(hausdorff);
   decimater.module(quadric).unset_max_err();
   decimater.module(hausdorff).set_tolerance(detail);
   decimater.module(normals).set_normal_deviation(2 * kLargestTurn);
   decimater.module(wide).set(kWideFacet * detail, complex.allowed.contact);
   if (!decimater.initialize()) return {};
+  StopWhenInterrupted stop(monitor);
+  decimater.set_observer(&stop);
   decimater.decimate();
+  if (monitor.is_interrupted()) return {};
 
   SimplerPart result;
   for (const auto f : mesh.faces()) {  // those that are left
@@ -151,7 +169,8 @@ std::optional<SimplerPart> simpler(const FaceComplex& complex, const FinePart& p
 
 }  // namespace
 
-void simplify(FaceComplex& complex, std::span<const Material> materials, double detail, MeshReport& report) {
+void simplify(FaceComplex& complex, std::span<const Material> materials, double detail, MeshReport& report,
+              const Monitor& monitor) {
   const std::vector<Face> flat = std::exchange(complex.flat, {});
   if (!(detail > 0)) return;
   complex.faces.insert(complex.faces.end(), flat.begin(), flat.end());
@@ -160,7 +179,7 @@ void simplify(FaceComplex& complex, std::span<const Material> materials, double 
   omerr().disable();  // parts that are not manifold are told by what add_face returns
   std::vector<std::optional<SimplerPart>> simplified(parts.size());
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) simplified[k] = simpler(complex, parts[k], detail);
+    for (std::size_t k = begin; k < end; ++k) simplified[k] = simpler(complex, parts[k], detail, monitor);
   });
 
   std::vector<bool> gone(complex.faces.size());

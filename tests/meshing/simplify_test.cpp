@@ -78,11 +78,15 @@ TEST(Simplify, MergesFacetsOfARailAndStaysWithinTheBound) {
 
 TEST(Simplify, TheDefaultGoesByTheElements) {
   RailInRoom maker;
-  const MeshedScene coarse = mesh(maker, {}, 1.0), fine = mesh(maker, {}, 0.05);
-  EXPECT_GT(coarse.report.simplified_faces, 100u);
-  EXPECT_LE(coarse.report.simplified_by, 1.0 / 512);
-  EXPECT_LE(fine.report.simplified_by, 0.05 / 512);
-  EXPECT_LT(fine.report.simplified_faces, coarse.report.simplified_faces);
+  const auto by_default = [&](double max_element) {
+    return build_patches(maker.scene(), {.max_element = max_element, .target_triangles = 300}).report;
+  };
+  const MeshReport coarse = by_default(1), fine = by_default(0.05), huge = by_default(1000);
+  EXPECT_GT(coarse.simplified_faces, 100u);
+  EXPECT_LE(coarse.simplified_by, 1.0 / 512);
+  EXPECT_LE(fine.simplified_by, 0.05 / 512);
+  EXPECT_LT(fine.simplified_faces, coarse.simplified_faces);
+  EXPECT_LE(huge.simplified_by, 0.005) << "elements as long as 300 triangles have them are 1 m";
 }
 
 TEST(Simplify, LeavesAloneWhatLightSees) {

@@ -1,35 +1,21 @@
 #include "meshing/fine_parts.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "solver/model/box_tree.h"
+#include "solver/model/disjoint_sets.h"
 
 namespace clerestory {
 namespace {
 
-class Groups {
- public:
-  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t of(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  /// The smaller one leads.
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = of(a);
-    b = of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
+std::uint32_t group_of(DisjointSets& groups, std::size_t face) {
+  return static_cast<std::uint32_t>(groups.find(face));
+}
 
 bool only_reflects(const Material& m) { return m.kind == MaterialKind::diffuse && m.sides == 2 && !m.emits(); }
 
 /// Joins faces over their edges, and says which vertices are ends of rims.
-std::vector<bool> join_over_edges(const FaceComplex& complex, Groups& groups) {
+std::vector<bool> join_over_edges(const FaceComplex& complex, DisjointSets& groups) {
   struct Edge {
     std::uint32_t surface, material, low, high, face;
     bool falls;  ///< the face goes from high to low
@@ -68,7 +54,7 @@ bool is_narrow(const FaceComplex& complex, const Face& face, double narrow) {
 
 /// Holds the edges that narrow facets of other groups come near: where fine parts lie in each other, as a handle's
 /// bar in its bends, each would cut the other into splinters if it changed.
-void hold_where_groups_meet(const FaceComplex& complex, Groups& groups, std::span<const std::uint32_t> narrow_faces,
+void hold_where_groups_meet(const FaceComplex& complex, DisjointSets& groups, std::span<const std::uint32_t> narrow_faces,
                             double near, std::vector<bool>& held) {
   const auto box_of = [&](std::uint32_t i) {
     Box box;
@@ -79,14 +65,14 @@ void hold_where_groups_meet(const FaceComplex& complex, Groups& groups, std::spa
   using Range = std::array<std::uint32_t, 2>;  // of groups
   const std::vector<Range> range = tree.by_node(
       [&](std::uint32_t i) {
-        const std::uint32_t g = groups.of(narrow_faces[i]);
+        const std::uint32_t g = group_of(groups, narrow_faces[i]);
         return Range{g, g};
       },
       [](const Range& a, const Range& b) {
         return Range{std::min(a[0], b[0]), std::max(a[1], b[1])};
       });
   for (const std::uint32_t f : narrow_faces) {
-    const std::uint32_t g = groups.of(f);
+    const std::uint32_t g = group_of(groups, f);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = complex.faces[f].corner[k], w = complex.faces[f].corner[(k + 1) % 3];
       bool met = held[v] && held[w];
@@ -94,7 +80,7 @@ void hold_where_groups_meet(const FaceComplex& complex, Groups& groups, std::spa
           [&](const Box& box) {
             return !met && box.grown(near).touches_segment(complex.vertices[v], complex.vertices[w]);
           },
-          [&](std::uint32_t i) { met = met || groups.of(narrow_faces[i]) != g; },
+          [&](std::uint32_t i) { met = met || group_of(groups, narrow_faces[i]) != g; },
           [&](std::size_t node) {
             return range[node] != Range{g, g};
           });
@@ -107,13 +93,13 @@ void hold_where_groups_meet(const FaceComplex& complex, Groups& groups, std::spa
 
 std::vector<FinePart> fine_parts(const FaceComplex& complex, std::span<const Material> materials, double narrow) {
   const std::size_t n = complex.faces.size();
-  Groups groups(n);
+  DisjointSets groups(n);
   std::vector<bool> held = join_over_edges(complex, groups), is_fine(n);
   constexpr std::uint32_t kNone = Face::kNone;
   std::vector<std::uint32_t> owner(complex.vertices.size(), kNone), part_of(n, kNone), narrow_faces;
   for (std::uint32_t f = 0; f < n; ++f) {
     const Face& face = complex.faces[f];
-    const std::uint32_t g = groups.of(f);
+    const std::uint32_t g = group_of(groups, f);
     if (is_narrow(complex, face, narrow)) {
       narrow_faces.push_back(f);
       if (only_reflects(materials[face.material.value])) is_fine[g] = true;
@@ -128,7 +114,7 @@ std::vector<FinePart> fine_parts(const FaceComplex& complex, std::span<const Mat
 
   std::vector<FinePart> parts;
   for (std::uint32_t f = 0; f < n; ++f) {
-    const std::uint32_t g = groups.of(f);
+    const std::uint32_t g = group_of(groups, f);
     if (!is_fine[g]) continue;
     if (part_of[g] == kNone) {
       part_of[g] = static_cast<std::uint32_t>(parts.size());

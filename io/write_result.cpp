@@ -143,6 +143,8 @@ void write_result(AtomicFile& file, const PatchSet& patches, const VertexLightma
   add_light(data->GetCellData(), solution.E, solution.B, daylight_reference);
   if (!solution.std_error.value.empty()) add_field(data->GetCellData(), "irradiance_std_error", solution.std_error);
   add_indices_of_patches(data->GetCellData(), patches);
+  if (!patches.room.empty())
+    add_indices(data->GetCellData(), "room", patches.patch_count(), [&](std::size_t i) { return patches.room[i]; });
   add_indices(data->GetCellData(), "level", patches.patch_count(),
               [&](std::size_t i) { return patches.level.empty() ? 0 : patches.level[i]; });
   add_light(data->GetPointData(), lightmap.E, radiosity_at_points(patches, lightmap), daylight_reference);

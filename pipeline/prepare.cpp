@@ -12,11 +12,15 @@
 #include "solver/illumination/place_lights.h"
 #include "solver/model/error.h"
 #include "solver/run/memory_estimate.h"
+#include "solver/spaces/rooms.h"
 
 namespace clerestory {
 namespace {
 
 LitSides all_sides(const PatchSet& patches) { return {std::vector<bool>(2 * patches.triangle_count(), true), {}}; }
+
+/// Rooms that the models name by volumes, and the scene by surfaces.
+NamedRooms named_rooms(const Scene& scene) { return {scene.spaces, {}}; }
 
 std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
                                    const Monitor& monitor, StageSeconds& seconds) {
@@ -42,6 +46,11 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
   if (!p.lit_sides.space.empty())
     for (std::size_t i = 0; i < p.patches.patch_count(); ++i)
       p.patches.space.push_back(p.lit_sides.space[2 * p.patches.triangle[i] + p.patches.side[i]]);
+  if (has_light(scene) && !monitor.is_interrupted()) {
+    Rooms rooms = find_rooms(p.problem(), named_rooms(scene), settings.solve.seed, monitor);
+    p.patches.room = std::move(rooms.of_patch);
+    p.patches.rooms = std::move(rooms.names);
+  }
   lap.add_to(seconds.build);
   return p;
 }

@@ -398,6 +398,7 @@ PatchSet ElementMesh::leaf_patches() const {
   out.vertices = vertices_;
   out.materials = patches_.materials;
   out.surfaces = patches_.surfaces;
+  out.rooms = patches_.rooms;
   out.side_patch = patches_.side_patch;
   out.splits.resize(elements_.size());
   for (std::size_t e = 0; e < elements_.size(); ++e)
@@ -407,6 +408,7 @@ PatchSet ElementMesh::leaf_patches() const {
   out.level.resize(n);
   if (!patches_.joined.empty()) out.joined.resize(n);
   if (!patches_.space.empty()) out.space.resize(n);
+  if (!patches_.room.empty()) out.room.resize(n);
   out.rho = out.M = Field(n, patches_.channels);
   for (std::size_t i = 0; i < n; ++i) {
     const Element& e = elements_[leaf[i]];
@@ -421,6 +423,7 @@ PatchSet ElementMesh::leaf_patches() const {
     out.side_surface[i] = patches_.side_surface[t];
     if (!out.joined.empty()) out.joined[i] = patches_.joined[t];
     if (!out.space.empty()) out.space[i] = patches_.space[e.patch];
+    if (!out.room.empty()) out.room[i] = patches_.room[e.patch];
     out.triangle[i] = TriangleId{i};
     out.side[i] = side;
     out.area[i] = e.area;

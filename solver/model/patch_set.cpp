@@ -81,6 +81,7 @@ void make_patches(PatchSet& patches, const std::vector<bool>& wanted) {
   p.normal.clear();
   p.level.clear();
   p.space.clear();
+  p.room.clear();
   p.tau = Field();
   p.behind_begin.clear();
   p.behind.clear();

@@ -61,6 +61,7 @@ struct PatchSet {
   std::vector<std::uint8_t> level;   ///< N, halvings since the patch; empty: none was halved
   std::vector<std::uint32_t> space;  ///< N, patches that see each other, directly or over others, have one number;
                                      ///< empty: not known
+  std::vector<std::uint32_t> room;   ///< N, by solver/spaces/rooms.h; empty: not known
   std::vector<bool> spot;  ///< N, lit by the sun or a luminaire, bright for the room around it; empty: not known
 
   /// A patch on the other side of a diffuser's patch, and the share of that patch's area which it covers.
@@ -73,6 +74,7 @@ struct PatchSet {
 
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< by SurfaceId
+  std::vector<std::string> rooms;     ///< names, by `room`
 
   std::size_t patch_count() const { return triangle.size(); }
   std::size_t triangle_count() const { return corners.size(); }

@@ -28,6 +28,7 @@ enum Stream : std::uint64_t {
   kLuminaireRays = 0x32,
   kLuminaireSearch = 0x33,
   kOpeningRays = 0x34,
+  kRoomRays = 0x35,
   // Methods, by patch or pair of them.
   kShots = 0x41,
   kPathsOfPatch = 0x51,

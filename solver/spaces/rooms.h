@@ -1,0 +1,36 @@
+#pragma once
+// Rooms: where people would say a surface is.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/illumination/problem.h"
+#include "solver/model/monitor.h"
+#include "solver/model/named_space.h"
+
+namespace clerestory {
+
+struct Rooms {
+  std::vector<std::uint32_t> of_patch;  ///< N, a number below names.size()
+  std::vector<std::string> names;       ///< "outdoors" first, where there is any; then by area, the largest first; last "smaller spaces"
+};
+
+/// A room that the scene names by its surfaces, or the model by a volume.
+struct NamedRooms {
+  std::span<const NamedSpace> spaces;                       ///< scene's frame [m]
+  std::vector<std::pair<std::string, std::vector<bool>>> by_surface;  ///< name, and by SurfaceId whether it is in there
+};
+
+/// Patches that see each other belong together, but not through glass, in mirrors or through the openings that the sky
+/// looks in by; nor where they see little of each other, as through a door. What sees the sky otherwise is outdoors.
+/// Surfaces and volumes that are named decide before that.
+///
+/// Labels are handed on by the majority of what each patch sees (Raghavan et al. 2007), then those that see too much of
+/// another are joined to it.
+/// Threads: same result for any number. Cost: about half a million rays, 8 at least a patch.
+Rooms find_rooms(const Problem& problem, const NamedRooms& named, std::uint64_t seed, const Monitor& monitor = {});
+
+}  // namespace clerestory

@@ -16,9 +16,15 @@
 namespace clerestory {
 namespace {
 
-std::optional<RunReport::ErrorFigures> figures_of(const std::optional<MeasuredError>& e) {
-  if (!e) return {};
-  return RunReport::ErrorFigures{e->rms_relative, e->p95_relative, e->samples, e->confidence};
+RunReport::Error figures_of(const ErrorFigures& e) {
+  return {e.rms_relative, e.median_relative, e.p95_relative, e.samples, e.confidence, e.bound};
+}
+
+std::vector<RunReport::PartError> parts_of(const std::optional<MeasuredError>& e) {
+  std::vector<RunReport::PartError> parts;
+  if (!e) return parts;
+  for (const ErrorOfPart& p : e->parts) parts.push_back({p.name, p.area, p.mean_illuminance, figures_of(p.figures)});
+  return parts;
 }
 
 std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) {
@@ -64,8 +70,13 @@ std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
 }  // namespace
 
 std::string error_line(const MeasuredError& e) {
-  const std::string where = ", measured at " + counted(e.samples, "point");
-  if (e.rms_relative < e.confidence) return "below " + percent(e.rms_relative + e.confidence) + " rms" + where;
+  const ErrorOfPart* worst = e.parts.size() > 1 ? e.worst() : nullptr;
+  const std::string where =
+      ", measured at " + counted(e.samples, "point") +
+      (worst ? "; worst in '" + quotable(worst->name, 40) + "': " + (worst->figures.bound ? "below " : "") +
+                   percent(worst->figures.rms_relative) + " rms of " + rounded(worst->mean_illuminance) + " lx"
+             : "");
+  if (e.bound) return "below " + percent(e.rms_relative) + " rms" + where;
   return percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), 95 % of points within " +
          percent(e.p95_relative) + where;
 }
@@ -145,8 +156,12 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.stop = s.solution.stop;
   r.log = s.solution.log;
   r.repairs = s.repairs;
-  r.error = figures_of(s.error);
-  r.error_sensors = figures_of(s.error_sensors);
+  if (s.error) r.error = figures_of(*s.error);
+  if (s.error_sensors) r.error_sensors = figures_of(*s.error_sensors);
+  r.error_spaces = parts_of(s.error);
+  r.error_sets = parts_of(s.error_sensors);
+  if (const ErrorOfPart* worst = s.error ? s.error->worst() : nullptr)
+    r.worst_space = static_cast<std::size_t>(worst - s.error->parts.data());
   r.daylight = scene.daylight;
   r.luminaires = luminaires_by_file(scene.lights);
   if (s.sensor_E.size() > 0) r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));

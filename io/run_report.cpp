@@ -42,12 +42,14 @@ void add_mesh_figures(std::vector<Figure>& out, const MeshReport& r) {
 }
 
 void add_error_figures(std::vector<Figure>& out, const std::string& group,
-                       const std::optional<RunReport::ErrorFigures>& error) {
+                       const std::optional<RunReport::Error>& error) {
   if (!error) return;
   out.push_back({group + ".rms_relative", error->rms_relative});
+  out.push_back({group + ".median_relative", error->median_relative});
   out.push_back({group + ".p95_relative", error->p95_relative});
   out.push_back({group + ".samples", count(error->samples)});
   out.push_back({group + ".confidence", error->confidence});
+  out.push_back({group + ".bound", error->bound});
 }
 
 std::string two_digits(int n) { return (n < 10 ? "0" : "") + std::to_string(n); }
@@ -105,6 +107,19 @@ Json json_of(const RunReport::Space& s) {
   Json json = {{"name", s.name}};
   if (!s.long_name.empty()) json["long_name"] = s.long_name;
   if (s.volume > 0) json["area"] = s.area, json["height"] = s.height, json["volume"] = s.volume;
+  return json;
+}
+
+Json json_of(const RunReport::PartError& p) {
+  Json json = {{"name", p.name}, {"mean_illuminance", p.mean_illuminance}, {"samples", p.error.samples}};
+  if (p.area > 0) json["area"] = p.area;
+  // Where no path finds light there is no error to tell.
+  const auto set = [&](const char* name, double value) { json[name] = p.error.samples > 0 ? Json(value) : Json(); };
+  set("rms_relative", p.error.rms_relative);
+  set("median_relative", p.error.median_relative);
+  set("p95_relative", p.error.p95_relative);
+  set("confidence", p.error.confidence);
+  json["bound"] = p.error.bound;
   return json;
 }
 
@@ -207,6 +222,9 @@ void write_report(AtomicFile& file, const RunReport& report) {
   for (const Figure& figure : repeatable_figures(report)) set(json, figure);
   for (const Figure& figure : run_figures(report)) set(json, figure);
   if (!report.error) json["error"] = nullptr;  // asked for by readers even when there was no time to measure
+  if (report.error) json["error"]["spaces"] = array_of(report.error_spaces);
+  if (report.error && report.worst_space) json["error"]["worst"] = json_of(report.error_spaces[*report.worst_space]);
+  if (report.error_sensors) json["error_sensors"]["sets"] = array_of(report.error_sets);
   if (!report.luminaires.empty()) json["luminaires"] = array_of(report.luminaires);
   if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
   if (!report.spaces.empty()) json["spaces"] = array_of(report.spaces);

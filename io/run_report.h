@@ -39,12 +39,22 @@ struct RunReport {
   long iterations = 0;
   double residual = 0;  ///< [1]
   EnergyBalance energy;
-  struct ErrorFigures {
-    double rms_relative = 0, p95_relative = 0;  ///< [1]
+  struct Error {
+    double rms_relative = 0, median_relative = 0, p95_relative = 0;  ///< [1]
     std::size_t samples = 0;
     double confidence = 0;  ///< half-width of the 95 % interval of rms_relative
+    bool bound = false;     ///< the error is not resolved: it is at most so large
   };
-  std::optional<ErrorFigures> error, error_sensors;  ///< empty when not measured
+  /// Of a room or a set of sensors.
+  struct PartError {
+    std::string name;
+    double area = 0;              ///< [m2]; of sensors 0
+    double mean_illuminance = 0;  ///< [lx]
+    Error error;                  ///< samples is 0 where no path found light
+  };
+  std::optional<Error> error, error_sensors;        ///< empty when not measured
+  std::vector<PartError> error_spaces, error_sets;  ///< by room, by set of sensors
+  std::optional<std::size_t> worst_space;           ///< in error_spaces
   std::optional<Daylight> daylight;
   /// Luminaires of one photometric file (or all points, or all spots) in one group.
   struct Luminaires {

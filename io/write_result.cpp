@@ -103,6 +103,8 @@ void add_field_data(vtkPolyData* data, const PatchSet& patches, const RunReport&
   vtkFieldData* to = data->GetFieldData();
   for (const Figure& figure : repeatable_figures(report)) add_figure(to, figure);
   add_names(to, "material_names", patches.materials.size(), [&](std::size_t i) { return patches.materials[i].name; });
+  if (!patches.rooms.empty())
+    add_names(to, "room_names", patches.rooms.size(), [&](std::size_t i) { return patches.rooms[i]; });
   add_names(to, "surface_names", patches.surfaces.size(), [&](std::size_t i) { return patches.surfaces[i]; });
 }
 

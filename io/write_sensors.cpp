@@ -17,10 +17,11 @@ void append(std::string& row, double value) {
 
 }  // namespace
 
-void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const Field& E) {
+void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const Field& E, const Field& std_error) {
   std::string text = "x,y,z,nx,ny,nz,illuminance";
   for (int k = 0; k < E.channels; ++k) text += ",irradiance_" + std::to_string(k);
-  text += '\n';
+  const bool has_error = !std_error.value.empty();
+  text += has_error ? ",std_error\n" : "\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& [p, n] = points[i];
     for (const double value : {p.x, p.y, p.z, n.x, n.y, n.z}) {
@@ -32,14 +33,19 @@ void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const 
       text += ',';
       append(text, E.at(i, k));
     }
+    if (has_error) {
+      text += ',';
+      append(text, photometric(std_error[i]));
+    }
     text += '\n';
   }
   file.write(text);
 }
 
-void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E) {
+void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E,
+                   const Field& std_error) {
   AtomicFile whole(file);
-  write_sensors(whole, points, E);
+  write_sensors(whole, points, E, std_error);
   whole.commit();
 }
 

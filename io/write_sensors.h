@@ -11,9 +11,10 @@
 namespace clerestory {
 
 /// One row a point, in the order given: x,y,z,nx,ny,nz,illuminance [lx],irradiance_0[,irradiance_1,irradiance_2]
-/// [W/m2], each the shortest decimal that reads back as the same number. Into a file that
-/// the caller commits, or a whole one.
-void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const Field& E);
-void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E);
+/// [W/m2][,std_error of the illuminance [lx]], each the shortest decimal that reads back as the same number. Into a
+/// file that the caller commits, or a whole one.
+void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const Field& E, const Field& std_error = {});
+void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E,
+                   const Field& std_error = {});
 
 }  // namespace clerestory

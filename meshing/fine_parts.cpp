@@ -8,11 +8,9 @@
 namespace clerestory {
 namespace {
 
-std::uint32_t group_of(DisjointSets& groups, std::size_t face) {
-  return static_cast<std::uint32_t>(groups.find(face));
-}
+std::uint32_t group_of(DisjointSets& groups, std::size_t face) { return static_cast<std::uint32_t>(groups.find(face)); }
 
-bool only_reflects(const Material& m) { return m.kind == MaterialKind::diffuse && m.sides == 2 && !m.emits(); }
+bool only_reflects(const Material& m) { return m.receives() && !m.scatters_through() && m.sides == 2 && !m.emits(); }
 
 /// Joins faces over their edges, and says which vertices are ends of rims.
 std::vector<bool> join_over_edges(const FaceComplex& complex, DisjointSets& groups) {
@@ -54,8 +52,8 @@ bool is_narrow(const FaceComplex& complex, const Face& face, double narrow) {
 
 /// Holds the edges that narrow facets of other groups come near: where fine parts lie in each other, as a handle's
 /// bar in its bends, each would cut the other into splinters if it changed.
-void hold_where_groups_meet(const FaceComplex& complex, DisjointSets& groups, std::span<const std::uint32_t> narrow_faces,
-                            double near, std::vector<bool>& held) {
+void hold_where_groups_meet(const FaceComplex& complex, DisjointSets& groups,
+                            std::span<const std::uint32_t> narrow_faces, double near, std::vector<bool>& held) {
   const auto box_of = [&](std::uint32_t i) {
     Box box;
     for (const std::uint32_t v : complex.faces[narrow_faces[i]].corner) box.add(complex.vertices[v]);

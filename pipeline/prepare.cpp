@@ -19,9 +19,6 @@ namespace {
 
 LitSides all_sides(const PatchSet& patches) { return {std::vector<bool>(2 * patches.triangle_count(), true), {}}; }
 
-/// Rooms that the models name by volumes, and the scene by surfaces.
-NamedRooms named_rooms(const Scene& scene) { return {scene.spaces, {}}; }
-
 std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
                                    const Monitor& monitor, StageSeconds& seconds) {
   Lap lap;
@@ -47,7 +44,7 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
     for (std::size_t i = 0; i < p.patches.patch_count(); ++i)
       p.patches.space.push_back(p.lit_sides.space[2 * p.patches.triangle[i] + p.patches.side[i]]);
   if (has_light(scene) && !monitor.is_interrupted()) {
-    Rooms rooms = find_rooms(p.problem(), named_rooms(scene), settings.solve.seed, monitor);
+    Rooms rooms = find_rooms(p.problem(), {scene.spaces, scene.rooms}, settings.solve.seed, monitor);
     p.patches.room = std::move(rooms.of_patch);
     p.patches.rooms = std::move(rooms.names);
   }

@@ -1,5 +1,6 @@
 #include "pipeline/repeat_to_target.h"
 
+#include <algorithm>
 #include <new>
 #include <string>
 #include <utility>
@@ -56,15 +57,23 @@ Clock::time_point deadline(const Settings& s) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*s.time_limit));
 }
 
-bool is_better(const Solved& a, const Solved& b) {
-  return a.error && (!b.error || a.error->rms_relative <= b.error->rms_relative);
+/// Of the worst room and the worst set of sensors, for sure.
+double worst_error(const Solved& s) {
+  const auto of = [](const std::optional<MeasuredError>& error) {
+    if (!error) return 0.0;
+    const ErrorOfPart* worst = error->worst();
+    return std::max(error->upper(), worst ? worst->figures.upper() : 0.0);
+  };
+  return std::max(of(s.error), of(s.error_sensors));
 }
+
+bool is_better(const Solved& a, const Solved& b) { return a.error && (!b.error || worst_error(a) <= worst_error(b)); }
 
 }  // namespace
 
 bool meets_target(const Solved& s) {
   if (!s.settings.target_error) return true;
-  return s.error && s.error->rms_relative + s.error->confidence <= *s.settings.target_error;
+  return s.error && worst_error(s) <= *s.settings.target_error;
 }
 
 Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRound& round) {
@@ -95,7 +104,7 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
   for (int k = 1; k < kMostRounds && !best.empty() && !meets_target(best) && !monitor.should_stop(); ++k) {
     finer.max_element = finer.max_element.value_or(best.repairs.max_element) * kTighterEdge;
     ++finer.solve.tighten;
-    observer.note("error " + percent(best.error ? best.error->rms_relative : 1) + ", asked for " +
+    observer.note("error up to " + percent(best.error ? worst_error(best) : 1) + ", asked for " +
                   percent(*finer.target_error) + ": again with elements of " + rounded(*finer.max_element) +
                   " m and twice the rays");
     // What is solved already must not be lost to a try that needs too much.

@@ -29,9 +29,12 @@ void warn_about_energy(const EnergyBalance& energy, Observer& observer) {
 void warn_about_error(const Solved& s, Observer& observer) {
   if (!s.error || s.settings.target_error) return;  // a target that is missed is said by who asked for it
   const double stated = effort(s.settings.solve.accuracy).vertex_tolerance;
-  if (s.error->rms_relative - s.error->confidence <= stated) return;
-  observer.warn("the measured error is " + percent(s.error->rms_relative) + " rms (+- " + percent(s.error->confidence) +
-                "), more than the " + percent(stated) +
+  const ErrorOfPart* worst = s.error->worst();
+  const bool is_in_room = worst && worst->figures.lower() > s.error->lower();
+  const ErrorFigures& e = is_in_room ? worst->figures : *s.error;
+  if (e.lower() <= stated) return;
+  observer.warn("the measured error " + (is_in_room ? "in '" + worst->name + "' " : std::string()) + "is " +
+                percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), more than the " + percent(stated) +
                 " that this accuracy stands for: light changes faster than the elements show, beside a lamp or a "
                 "narrow gap. Means and sensors are better than single values of the picture; try --accuracy fine, a "
                 "smaller --max-element or --target-error.");
@@ -52,9 +55,13 @@ void warn_about_sensors(const Solved& s, Observer& observer) {
     return;
   }
   const double stated = effort(s.settings.solve.accuracy).vertex_tolerance;
-  if (s.error_sensors->rms_relative - s.error_sensors->confidence <= stated) return;
-  observer.warn("the measured error of the sensors is " + percent(s.error_sensors->rms_relative) + " rms (+- " +
-                percent(s.error_sensors->confidence) + "), more than the " + percent(stated) +
+  const ErrorOfPart* worst = s.error_sensors->worst();
+  const bool is_in_set =
+      worst && s.error_sensors->parts.size() > 1 && worst->figures.lower() > s.error_sensors->lower();
+  const ErrorFigures& e = is_in_set ? worst->figures : *s.error_sensors;
+  if (e.lower() <= stated) return;
+  observer.warn("the measured error of the sensors " + (is_in_set ? "'" + worst->name + "' " : std::string()) + "is " +
+                percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), more than the " + percent(stated) +
                 " that this accuracy stands for: their light comes from little lamps, through narrow gaps or over many "
                 "surfaces. Do not rely on single values; try --accuracy fine.");
 }

@@ -28,20 +28,27 @@ std::optional<MeasuredError> if_measured(const MeasuredError& error) {
 
 struct PlanesAndE {
   std::vector<SensorPoint> planes;
+  std::vector<PointsOfSet> sets;
   Field E;
 };
 
 /// All but those with the given numbers, ascending.
-PlanesAndE without(const std::vector<std::size_t>& numbers, const std::vector<SensorPoint>& planes, const Field& E) {
-  PlanesAndE rest{{}, Field(planes.size() - numbers.size(), E.channels)};
+PlanesAndE without(const std::vector<std::size_t>& numbers, const SensorPlanes& sensors,
+                   const std::vector<SensorSet>& sets, const Field& E) {
+  PlanesAndE rest{{}, {}, Field(sensors.planes.size() - numbers.size(), E.channels)};
   auto next = numbers.begin();
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (next != numbers.end() && *next == i) {
-      ++next;
-      continue;
+  std::size_t sensor = 0, plane = 0;
+  for (const SensorSet& set : sets) {
+    sensor += set.points.size();
+    for (; plane < sensors.begin[sensor]; ++plane) {
+      if (next != numbers.end() && *next == plane) {
+        ++next;
+        continue;
+      }
+      rest.E.set(rest.planes.size(), E[plane]);
+      rest.planes.push_back(sensors.planes[plane]);
     }
-    rest.E.set(rest.planes.size(), E[i]);
-    rest.planes.push_back(planes[i]);
+    rest.sets.push_back({set.name, rest.planes.size()});
   }
   return rest;
 }
@@ -83,7 +90,12 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
 
         // -> irradiance at sensors.
         const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, monitor);
-        if (at_planes.complete()) out.sensor_E = mean_over_planes(sensors, at_planes.E);
+        if (at_planes.complete()) {
+          out.sensor_E = mean_over_planes(sensors, at_planes.E);
+          // The planes of one sensor share no path, but what they have in common may be off alike: not divided by root
+          // N.
+          if (at_planes.std_error.size() > 0) out.sensor_std_error = mean_over_planes(sensors, at_planes.std_error);
+        }
         solution.rays += at_planes.rays;
         if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
         lap.add_to(seconds.reconstruct);
@@ -94,11 +106,11 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         if (monitor.is_late())
           measuring.deadline =
               std::min(std::chrono::steady_clock::now() + kTimeToMeasure, monitor.deadline + 3 * kTimeToMeasure);
-        out.error = if_measured(measure_error(problem, solved.lightmap, spend, solution.rays, options.seed, measuring));
+        out.error = if_measured(measure_error(problem, solved.lightmap, solution, spend, options.seed, measuring));
         if (at_planes.complete()) {
-          const auto [planes, E] = without(*buried, sensors.planes, at_planes.E);
+          const auto [planes, sets, E] = without(*buried, sensors, scene.sensors, at_planes.E);
           out.error_sensors =
-              if_measured(measure_sensor_error(problem, planes, E, spend, solution.rays, options.seed, measuring));
+              if_measured(measure_sensor_error(problem, planes, sets, E, solution, spend, options.seed, measuring));
         }
         out.buried_sensors = sensors_of(sensors, *buried).size();
         if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;

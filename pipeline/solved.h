@@ -21,6 +21,7 @@ struct Solved {
   VertexLightmap lightmap;  ///< of the elements, E filled
   Solution solution;        ///< of the elements
   Field sensor_E;  ///< S x channels, by sensor of all sets, one set after the other [W/m2]; empty: there was no time
+  Field sensor_std_error;                             ///< of these; empty unless paths estimated them
   std::optional<MeasuredError> error, error_sensors;  ///< empty when not measured
   std::size_t buried_sensors = 0;                     ///< inside solids: their error is not part of error_sensors
   MeshReport repairs;
@@ -34,7 +35,8 @@ struct Solved {
   bool empty() const { return patches.patch_count() == 0; }
 };
 
-/// Whether the target error is met for sure: the measured error and what is uncertain about it. True without a target.
+/// Whether the target error is met for sure, in the worst room and the worst set of sensors: the measured error and
+/// what is uncertain about it. True without a target.
 bool meets_target(const Solved& solved);
 
 }  // namespace clerestory

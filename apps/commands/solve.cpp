@@ -78,7 +78,8 @@ void write_outputs(const Arguments& arguments, const Scene& scene, const Solved&
   write_result(outputs.open(arguments.output), solved.patches, solved.lightmap, solved.solution,
                daylight_reference(scene.lights), report);
   if (solved.sensor_E.size() > 0)
-    write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E);
+    write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E,
+                  solved.sensor_std_error);
   if (solved.settings.debug) write_debug(outputs, arguments.solve.debug_output, solved.debug, solved.patches.origin);
 }
 

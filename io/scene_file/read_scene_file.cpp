@@ -14,6 +14,7 @@
 #include "io/scene_file/luminaire_entries.h"
 #include "io/scene_file/material_rules.h"
 #include "io/scene_file/place_model.h"
+#include "io/scene_file/room_entries.h"
 #include "io/scene_file/sensor_entries.h"
 #include "io/scene_file/sky_entries.h"
 #include "io/text.h"
@@ -170,9 +171,10 @@ void compare_north(const JsonObject& root, const std::string& file_name, Scene& 
 Scene read_scene_file(const std::filesystem::path& file) {
   const std::string name = short_name(file);
   const Json json = parse_json<Json>(read_input_file(file, kMaxBytes), name);
-  const JsonObject root(
-      json, name,
-      {"geometry", "materials", "fixtures", "luminaires", "sky", "sun", "location", "time", "sensors", "solver"}, ": ");
+  const JsonObject root(json, name,
+                        {"geometry", "materials", "fixtures", "luminaires", "sky", "sun", "location", "time", "sensors",
+                         "rooms", "solver"},
+                        ": ");
   Scene scene;
   scene.file = file.string();
   std::set<std::filesystem::path> files{file};
@@ -196,6 +198,7 @@ Scene read_scene_file(const std::filesystem::path& file) {
   if (root.has("sensors")) sensors = read_sensor_entries(root.at("sensors"), name, folder);
   read_geometry(root, name, folder, rules, fixtures, scene);
   scene.sensors = sets_of(std::move(sensors), scene.spaces);
+  if (root.has("rooms")) read_room_entries(root.at("rooms"), name, scene);
   report_rules(rules, name, scene);
   for (const FixtureRule& rule : fixtures)
     if (rule.used == 0)

@@ -14,6 +14,7 @@
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
+#include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
 
@@ -25,47 +26,38 @@ constexpr int kPilotPaths = 8;            ///< at each of the fewest points, to 
 constexpr std::size_t kFewestPoints = 8;  ///< in rooms so bright that paths hardly end
 constexpr std::size_t kMostPoints = 1 << 12;
 
-constexpr double kShareOfRays = 0.05;  ///< of those that the result took
+constexpr std::size_t kPointsOfRoom = 24;  ///< at least, in the mean
+constexpr double kShareOfRays = 0.03;      ///< of those that the result took
 
 }  // namespace
 
-MeasuredError summarise(std::span<const Comparison> samples) {
-  MeasuredError error;
-  error.samples = samples.size();
-  if (samples.empty()) return error;
-  const double n = static_cast<double>(samples.size());
-  double mean = 0, squares = 0, variance_of_references = 0, weights = 0;
-  for (const Comparison& s : samples) weights += s.weight / n;
-  const auto share = [&](const Comparison& s) { return s.weight / weights; };  // 1 in the mean
-  for (const Comparison& s : samples) mean += share(s) * s.r / n;
-  if (!std::isfinite(mean)) throw std::logic_error("a reference of the measured error is no number");
-  if (!(mean > 0)) return {};                       // in the dark there is nothing to be wrong about
-  std::vector<std::pair<double, double>> relative;  // and its share
-  for (const Comparison& s : samples) {
-    squares += share(s) * (s.x - s.r) * (s.x - s.r) / n;
-    variance_of_references += share(s) * s.std_error * s.std_error / n;
-    // Points much darker than the mean would make a share of nothing.
-    relative.push_back({std::abs(s.x - s.r) / std::max(s.r, 0.05 * mean), share(s)});
+const ErrorOfPart* MeasuredError::worst() const {
+  constexpr double kLeastArea = 0.01;
+  double area = 0;
+  for (const ErrorOfPart& part : parts) area += part.area;
+  const ErrorOfPart* worst = nullptr;
+  for (const ErrorOfPart& part : parts)
+    if (part.figures.samples > 0 && part.area >= kLeastArea * area &&
+        (!worst || part.figures.rms_relative > worst->figures.rms_relative))
+      worst = &part;
+  return worst;
+}
+
+namespace {
+
+/// Figures of all comparisons, and of each part.
+MeasuredError summarise_parts(const std::vector<Comparison>& comparisons, std::vector<ErrorOfPart> parts) {
+  MeasuredError error{summarise(comparisons)};
+  std::vector<std::vector<Comparison>> of_part(parts.size());
+  for (const Comparison& c : comparisons) of_part[c.part].push_back(c);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    parts[k].figures = summarise(of_part[k]);
   }
-  double spread = 0;
-  for (const Comparison& s : samples) {
-    const double d2 = (s.x - s.r) * (s.x - s.r) - s.std_error * s.std_error - (squares - variance_of_references);
-    spread += share(s) * share(s) * d2 * d2 / n;
-  }
-  // The reference's own noise adds to the differences; its variance is known and comes off.
-  const double variance_of_field = std::max(squares - variance_of_references, 0.0);
-  const double half_width = 1.96 * std::sqrt(spread / n);  // of the mean square
-  error.rms_relative = std::sqrt(variance_of_field) / mean;
-  error.confidence = (std::sqrt(variance_of_field + half_width) - std::sqrt(variance_of_field)) / mean;
-  // Right when errors are distributed like the noise, and too large when few large errors make up the variance. A
-  // distribution fitted to what lies behind the noise was tried: it took tails for noise and was low by a quarter.
-  std::sort(relative.begin(), relative.end());
-  double below = 0;
-  const auto p95 = std::find_if(relative.begin(), relative.end() - 1,
-                                [&](const auto& r) { return (below += r.second) > 0.95 * (n - 1); });
-  error.p95_relative = p95->first * (squares > 0 ? std::sqrt(variance_of_field / squares) : 1.0);
+  error.parts = std::move(parts);
   return error;
 }
+
+}  // namespace
 
 namespace {
 
@@ -75,13 +67,35 @@ struct References {
   bool complete = false;
 };
 
+/// Sets both gathers of all comparisons, or none of them when the monitor stops it.
+void add_gathers(const Problem& problem, const Solution& solution, const PointOf& point_of,
+                 const GatherQuality& quality, std::uint64_t key, const Monitor& monitor,
+                 std::vector<Comparison>& comparisons) {
+  const Illumination light = gather_illumination_by_slits(problem, solution.B, solution.slit_light, key, monitor);
+  // The points of one pattern share its strata, so what one of them makes of chance the next one does, too: several.
+  constexpr std::size_t kPatterns = 8;
+  std::vector<std::array<double, 2>> found(comparisons.size());
+  for (std::size_t p = 0; p < kPatterns; ++p) {
+    const std::size_t count = (comparisons.size() + kPatterns - 1 - p) / kPatterns;
+    for (std::size_t which = 0; which < 2; ++which) {
+      const GatherPattern pattern(quality, stream_key(key, kErrorGathers, 2 * p + which));
+      const PointIrradiance at = gather_at(
+          light, count, [&](std::size_t k) { return point_of(p + k * kPatterns); }, pattern, "error", monitor);
+      if (!at.complete()) return;
+      for (std::size_t k = 0; k < count; ++k) found[p + k * kPatterns][which] = luminous_mean(at.E[k]);
+    }
+  }
+  for (std::size_t k = 0; k < found.size(); ++k)
+    comparisons[k].gather = found[k][0], comparisons[k].other_gather = found[k][1];
+}
+
 /// Traces paths for references at the places of samples whose x is set, as many as the effort allows. Stopped by the
 /// monitor, it takes those that are there.
 ///
 /// problem  with other rays than those of the result.
-MeasuredError compare(const Problem& problem, const std::vector<Comparison>& samples, const PointOf& point_of,
-                      const ErrorEffort& effort, unsigned long long rays_spent, std::uint64_t key,
-                      const Monitor& monitor) {
+std::vector<Comparison> compare(const Problem& problem, const std::vector<Comparison>& samples, const PointOf& point_of,
+                                const Solution& solution, const ErrorEffort& effort, std::uint64_t key,
+                                const Monitor& monitor) {
   const Illumination light(problem);
   // In parts, not by points: where paths have millions of bounces there are few points, and each takes a minute.
   const auto trace = [&](std::size_t count, std::uint64_t stream, int paths, const auto& sample_of) {
@@ -106,88 +120,111 @@ MeasuredError compare(const Problem& problem, const std::vector<Comparison>& sam
       const auto [E, std_error] =
           estimate_of(std::span<const Spectrum, kReplicates>(&mean[k * kReplicates], kReplicates));
       const Comparison& sample = samples[sample_of(k)];
-      references.at.push_back({sample.x, luminous_mean(E), luminous_mean(std_error), sample.weight});
+      references.at.push_back(sample);
+      references.at.back().r = luminous_mean(E);
+      references.at.back().std_error = luminous_mean(std_error);
     }
     return references;
   };
 
   const std::size_t step = samples.size() / kFewestPoints + 1, pilots = (samples.size() + step - 1) / step;
   const References pilot = trace(pilots, key + 1, kPilotPaths, [&](std::size_t k) { return k * step; });
-  if (!pilot.complete) return summarise(pilot.at);
+  if (!pilot.complete) return pilot.at;
   const double rays_per_path = static_cast<double>(pilot.rays) / static_cast<double>(pilots * kPilotPaths);
   const double affordable =  // paths in all
-      std::max(kShareOfRays * static_cast<double>(rays_spent), effort.rays) / rays_per_path;
+      std::max(kShareOfRays * static_cast<double>(solution.rays), effort.rays) / rays_per_path;
   const double points = static_cast<double>(std::min(samples.size(), effort.points));
   const int paths = std::clamp(static_cast<int>(affordable / points), kFewestPaths, effort.paths);
   const auto count = std::min(samples.size(), std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));
-  const References all = trace(count, key, paths, [&](std::size_t k) { return k * samples.size() / count; });
-  return summarise(all.at.size() < pilot.at.size() ? pilot.at : all.at);
+  const auto number_of = [&](std::size_t k) { return k * samples.size() / count; };
+  References all = trace(count, key, paths, number_of);
+  if (all.at.size() < pilot.at.size()) return pilot.at;
+  if (all.complete && solution.std_error.value.empty())
+    add_gathers(
+        problem, solution, [&](std::size_t k) { return point_of(number_of(k)); }, effort.gather, key, monitor, all.at);
+  return all.at;
 }
 
 }  // namespace
 
 namespace {
 
-/// Patches one after another, space after space, each as long as its chance to be looked at.
-class PatchesBySpace {
+/// Patches one after another, room after room, each as long as its chance to be looked at.
+class PatchesByRoom {
  public:
-  explicit PatchesBySpace(const PatchSet& patches) : order_(patches.patch_count()), cumulative_(patches.patch_count()) {
+  PatchesByRoom(const PatchSet& patches, const Field& E)
+      : order_(patches.patch_count()),
+        cumulative_(patches.patch_count()),
+        parts_(std::max<std::size_t>(1, patches.rooms.size())) {
     std::iota(order_.begin(), order_.end(), 0u);
-    const auto space_of = [&](std::uint32_t i) { return patches.space.empty() ? 0u : patches.space[i]; };
+    const auto room_of = [&](std::uint32_t i) { return patches.room.empty() ? 0u : patches.room[i]; };
     std::stable_sort(order_.begin(), order_.end(),
-                     [&](std::uint32_t i, std::uint32_t j) { return space_of(i) < space_of(j); });
-    double all = 0, roots = 0;
-    std::map<std::uint32_t, double> area;
-    for (const std::uint32_t i : order_) area[space_of(i)] += patches.area[i], all += patches.area[i];
-    for (const auto& [space, a] : area) roots += std::sqrt(a);
+                     [&](std::uint32_t i, std::uint32_t j) { return room_of(i) < room_of(j); });
+    for (std::size_t k = 0; k < patches.rooms.size(); ++k) parts_[k].name = patches.rooms[k];
+    if (patches.rooms.empty()) parts_[0].name = "all surfaces";
+    double all = 0, roots = 0, large = 0;
+    for (const std::uint32_t i : order_) parts_[room_of(i)].area += patches.area[i], all += patches.area[i];
     if (!(all > 0)) return;
-    for (const auto& [space, a] : area) {
-      // Half of the looks go by area, and half by its root, so that a small dark room beside a large hall gets some.
-      const double looks = 0.5 * (a / all + std::sqrt(a) / roots);
-      weight_[space] = a / all / looks;
+    const auto is_large = [&](double area) { return area >= kLargeRoom * all; };
+    for (const std::uint32_t i : order_)
+      parts_[room_of(i)].mean_illuminance += photometric(E[i]) * patches.area[i] / parts_[room_of(i)].area;
+    for (const ErrorOfPart& p : parts_) roots += std::sqrt(p.area), large += is_large(p.area);
+    std::vector<double> weight;
+    for (const ErrorOfPart& p : parts_) {
+      // A third of the looks go by area, a third by its root, and a third to each large room alike.
+      const double looks = (p.area / all + std::sqrt(p.area) / roots + (is_large(p.area) ? 1 / large : 0)) / 3;
+      weight.push_back(looks > 0 ? p.area / all / looks : 0);
     }
     for (std::size_t k = 0; k < order_.size(); ++k) {
-      const double weight = weight_[space_of(order_[k])];
-      cumulative_[k] = total_ += weight > 0 ? patches.area[order_[k]] / weight : 0;
-      weight_of_.push_back(weight);
+      const double w = weight[room_of(order_[k])];
+      cumulative_[k] = total_ += w > 0 ? patches.area[order_[k]] / w : 0;
+      sample_of_.push_back({0, 0, 0, w, room_of(order_[k])});
     }
+    rooms_to_tell_ = static_cast<std::size_t>(large);
   }
 
   double total() const { return total_; }
+  std::size_t rooms_to_tell() const { return rooms_to_tell_; }
+  std::vector<ErrorOfPart> parts() const { return parts_; }
   struct Found {
     std::size_t patch;
-    double weight;
+    Comparison sample;  ///< weight and part
   };
   Found at(double place) const {
     const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), place);
     const std::size_t k =
         std::min<std::size_t>(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1);
-    return {order_[k], weight_of_[k]};
+    return {order_[k], sample_of_[k]};
   }
 
  private:
+  static constexpr double kLargeRoom = 0.01;  ///< of all area
   std::vector<std::uint32_t> order_;
-  std::vector<double> cumulative_, weight_of_;
-  std::map<std::uint32_t, double> weight_;
+  std::vector<double> cumulative_;
+  std::vector<Comparison> sample_of_;
+  std::vector<ErrorOfPart> parts_;
   double total_ = 0;
+  std::size_t rooms_to_tell_ = 0;
 };
 
 }  // namespace
 
-MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const ErrorEffort& effort,
-                            unsigned long long rays_spent, std::uint64_t seed, const Monitor& monitor) {
+MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const Solution& solution,
+                            const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  const PatchesBySpace by_space(patches);
-  if (!(by_space.total() > 0)) return {};
+  const PatchesByRoom by_room(patches, solution.E);
+  if (!(by_room.total() > 0)) return {};
   const RayScene rays = problem.rays.with_nearer_ends();
 
   std::vector<Comparison> samples(kMostPoints);
   std::vector<ReceivingPoint> places(kMostPoints);
   RandomStream random(seed, kErrorPoints);
   for (std::size_t s = 0; s < kMostPoints; ++s) {
-    const auto [i, weight_of_space] =
-        by_space.at((static_cast<double>(s) + random.uniform()) / static_cast<double>(kMostPoints) * by_space.total());
-    samples[s].weight = weight_of_space;
+    const auto [i, sample] =
+        by_room.at((static_cast<double>(s) + random.uniform()) / static_cast<double>(kMostPoints) * by_room.total());
+    samples[s] = sample;
+    samples[s].element = luminous_mean(solution.E[i]);
+    samples[s].albedo = luminous_mean(patches.albedo(i));
     const double u = random.uniform(), v = random.uniform();
     // The map is linear in the corners, so it interpolates their values as well as their positions.
     const auto weight = point_on_triangle({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, u, v);
@@ -196,24 +233,39 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
     places[s] = {rays.off_surface(point_on_triangle(patches.corner_positions(PatchId{i}), u, v), patches.normal[i]),
                  patches.normal[i]};
   }
-  return compare(
-      {patches, rays, problem.lights}, samples, [&](std::size_t i) { return places[i]; }, effort, rays_spent,
-      stream_key(seed, kErrorPaths), monitor);
+  ErrorEffort spend = effort;
+  spend.points = std::min(kMostPoints, std::max(effort.points, kPointsOfRoom * by_room.rooms_to_tell()));
+  return summarise_parts(compare(
+                             {patches, rays, problem.lights}, samples, [&](std::size_t i) { return places[i]; },
+                             solution, spend, stream_key(seed, kErrorPaths), monitor),
+                         by_room.parts());
 }
 
-MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,
-                                   const ErrorEffort& effort, unsigned long long rays_spent, std::uint64_t seed,
-                                   const Monitor& monitor) {
+MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points,
+                                   std::span<const PointsOfSet> sets, const Field& E, const Solution& solution,
+                                   const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor) {
   const std::size_t count = std::min(points.size(), kMostPoints);
   if (count == 0) return {};
   const auto number_of = [&](std::size_t s) { return s * points.size() / count; };
   std::vector<Comparison> samples(count);
-  for (std::size_t s = 0; s < count; ++s) samples[s].x = luminous_mean(E[number_of(s)]);
+  std::vector<ErrorOfPart> parts;
+  for (std::size_t k = 0, i = 0; k < sets.size(); ++k) {
+    parts.push_back({.name = sets[k].name, .figures = {}});
+    const double points_of_set = static_cast<double>(sets[k].end - i);
+    for (; i < sets[k].end; ++i) parts.back().mean_illuminance += photometric(E[i]) / points_of_set;
+  }
+  for (std::size_t s = 0; s < count; ++s) {
+    samples[s].x = luminous_mean(E[number_of(s)]);
+    samples[s].part =
+        static_cast<std::uint32_t>(std::ranges::upper_bound(sets, number_of(s), {}, &PointsOfSet::end) - sets.begin());
+  }
   const RayScene rays = problem.rays.with_nearer_ends();
   const PointOf point_of = sensor_points(points, problem.patches.origin, rays);
-  return compare(
-      {problem.patches, rays, problem.lights}, samples, [&](std::size_t s) { return point_of(number_of(s)); }, effort,
-      rays_spent, stream_key(seed, kSensorErrorPaths), monitor);
+  return summarise_parts(
+      compare(
+          {problem.patches, rays, problem.lights}, samples, [&](std::size_t s) { return point_of(number_of(s)); },
+          solution, effort, stream_key(seed, kSensorErrorPaths), monitor),
+      std::move(parts));
 }
 
 }  // namespace clerestory

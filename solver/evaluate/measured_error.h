@@ -4,49 +4,59 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "solver/evaluate/error_figures.h"
 #include "solver/illumination/problem.h"
 #include "solver/model/monitor.h"
 #include "solver/model/sensors.h"
+#include "solver/model/solution.h"
 #include "solver/model/vertex_lightmap.h"
+#include "solver/sampling/gather_pattern.h"
 
 namespace clerestory {
 
-/// Relative to the mean of the reference: sqrt(mean((x - r)^2)) / mean(r), reference noise taken out.
-struct MeasuredError {
-  double rms_relative = 0;
-  double p95_relative = 0;
-  std::size_t samples = 0;  ///< 0: stopped before anything was measured, or no light arrives at any of the points
-  double confidence = 0;    ///< half-width of the 95 % interval of rms_relative
+/// Of one room, or of one set of sensors.
+struct ErrorOfPart {
+  std::string name;
+  double area = 0;              ///< [m2]; of sensors 0
+  double mean_illuminance = 0;  ///< of the references [lx]
+  ErrorFigures figures;         ///< samples is 0 where no path found light
 };
 
-/// One comparison: value, reference and the reference's standard error (of eight replicates), as luminous means; and
-/// the area it stands for, in any unit.
-struct Comparison {
-  double x = 0, r = 0, std_error = 0, weight = 1;
+struct MeasuredError : ErrorFigures {
+  std::vector<ErrorOfPart> parts{};  ///< as PatchSet::rooms, or as the sets of sensors
+  /// The part whose error is the largest, of those with light and a hundredth of the area at least; none in the dark.
+  const ErrorOfPart* worst() const;
 };
-/// The noise of the references is taken out: of the mean square by its variance, of the percentile in the same
-/// proportion.
-MeasuredError summarise(std::span<const Comparison> comparisons);
 
 /// What a measurement may cost. Paths grow like 1 / (1 - rho): a bright room gets fewer of them, at fewer points, and a
 /// wider confidence, rather than hours.
 struct ErrorEffort {
-  std::size_t points;  ///< before a point gets more than the fewest paths that give a standard error
-  int paths;           ///< a point, before there are more points
-  double rays;         ///< at least; what the result took asks for more
+  std::size_t points;    ///< before a point gets more than the fewest paths that give a standard error
+  int paths;             ///< a point, before there are more points
+  double rays;           ///< at least; what the result took asks for more
+  GatherQuality gather;  ///< of each of two gathers
 };
 
-/// Compares the lightmap (linear between its points) with path tracing at random points of the surfaces.
+/// Compares the lightmap (linear between its points) with references at random points of the surfaces.
 ///
-/// rays_spent  by the solution so far: a twentieth as many go into the measurement, a tenth of its time, as they are
-///             single and go anywhere. From counts and not from time, so that every run measures the same.
-MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const ErrorEffort& effort,
-                            unsigned long long rays_spent, std::uint64_t seed, const Monitor& monitor = {});
+/// solution  whose radiosity gathers look up; where the method has none to trust, that of paths, paths are alone. A
+///           share of the rays that it took goes into the measurement, and a larger one of its time, as they are
+///           single and go anywhere. From counts and not from time, so that every run measures the same.
+MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const Solution& solution,
+                            const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor = {});
 
-/// Compares sensor values with path tracing at the sensor points; at an even choice of them where there are many.
-MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points, const Field& E,
-                                   const ErrorEffort& effort, unsigned long long rays_spent, std::uint64_t seed,
-                                   const Monitor& monitor = {});
+/// Compares sensor values with references at the sensor points; at an even choice of them where there are many.
+///
+/// sets  names, with the number of the first point behind each.
+struct PointsOfSet {
+  std::string name;
+  std::size_t end = 0;
+};
+MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points,
+                                   std::span<const PointsOfSet> sets, const Field& E, const Solution& solution,
+                                   const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor = {});
 
 }  // namespace clerestory

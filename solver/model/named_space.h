@@ -17,6 +17,12 @@ struct NamedSpace {
   bool has_volume() const { return !corner.empty(); }
 };
 
+/// A room by the surfaces that are in it, all or some of them.
+struct NamedSurfaces {
+  std::string name;
+  std::vector<bool> has_surface;  ///< by SurfaceId
+};
+
 /// Area in plan [m2]: half of what all faces show from above and below.
 double floor_area(const NamedSpace& space);
 /// [m3] of what faces close in, whichever way they are wound. Cost: O(n^2) in n triangles, up to 3,000; more are taken

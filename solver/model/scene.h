@@ -76,7 +76,8 @@ struct Scene {
   LightSpec lights;
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
   std::vector<SensorSet> sensors;
-  std::vector<NamedSpace> spaces;  ///< rooms that the models name
+  std::vector<NamedSpace> spaces;    ///< rooms that the models name
+  std::vector<NamedSurfaces> rooms;  ///< that the scene file names
   SolverSettings settings;
   std::vector<std::string> unused_materials;  ///< material rules of the scene file that matched nothing
   std::vector<std::string> warnings;          ///< what the reader assumed or left out, for people

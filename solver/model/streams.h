@@ -43,6 +43,7 @@ enum Stream : std::uint64_t {
   kErrorPoints = 0x71,
   kErrorPaths = 0x72,
   kSensorErrorPaths = 0x73,
+  kErrorGathers = 0x74,
   // Search for openings, by gap: judging them, sifting them, and once more. The stream takes the seed's place: a model
   // has the same openings for every seed.
   kGapRays = 0x81,

@@ -31,7 +31,7 @@ constexpr Effort kDraft{
     .noisy_patches = {.bundle = {16, 256, 256}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 64,
     .paths_of_sensor = 256,
-    .error = {.points = 64, .paths = 256, .rays = 6e4},
+    .error = {.points = 64, .paths = 256, .rays = 6e4, .gather = {{8, 128, 128}, {0, 2, 0.02, 256}, 32, 16}},
 };
 
 constexpr Effort kStandard{
@@ -53,7 +53,7 @@ constexpr Effort kStandard{
     .noisy_patches = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 256,
     .paths_of_sensor = 1024,
-    .error = {.points = 256, .paths = 512, .rays = 3e5},
+    .error = {.points = 256, .paths = 128, .rays = 1.5e5, .gather = {{16, 256, 256}, {1, 3, 0.01, 512}, 32, 16}},
 };
 
 // The kernels' own defaults are the recommended values: those of `standard`.
@@ -87,7 +87,7 @@ constexpr Effort kFine{
     .noisy_patches = {.bundle = {16, 256, 1024}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 1024,
     .paths_of_sensor = 4096,
-    .error = {.points = 512, .paths = 2048, .rays = 1.5e6},
+    .error = {.points = 512, .paths = 512, .rays = 1e6, .gather = {{16, 512, 1024}, {1, 4, 0.005, 2048}, 128, 32}},
 };
 
 void tighten(GatherQuality& quality, int times) {

@@ -18,6 +18,9 @@ namespace {
 constexpr std::size_t kRays = 1 << 19;  ///< in all, about
 constexpr std::size_t kFewestRays = 8, kMostRays = 64;
 constexpr int kSweeps = 24;
+/// So long those that have a name, and the open air, have no vote: all of one label at once, they would run through a
+/// door while those behind it still have a label each.
+constexpr int kSweepsAlone = 6;
 constexpr double kLeastRoom = 1e-3;  ///< of all area: what is smaller and has no name is no room of its own
 /// Two groups are one room when the smaller one sends more of its light to the other, or less to itself.
 constexpr double kMostBetween = 0.1, kLeastWithin = 0.5;
@@ -36,7 +39,8 @@ struct Sight {
   std::size_t size() const { return begin.size() - 1; }
 };
 
-bool passes_an_opening(const Problem& problem, std::span<const OpeningSphere> spheres, const Ray& ray, double distance) {
+bool passes_an_opening(const Problem& problem, std::span<const OpeningSphere> spheres, const Ray& ray,
+                       double distance) {
   const auto openings = problem.lights.sky_openings();
   for (std::size_t o = 0; o < openings.size(); ++o) {
     const bool near = spheres[o].is_passed(ray.origin, ray.direction) ||
@@ -51,6 +55,7 @@ Sight look_around(const Problem& problem, std::uint64_t seed, const Monitor& mon
   const std::size_t n = patches.patch_count();
   const auto air = static_cast<std::uint32_t>(n);
   const std::size_t rays = std::bit_floor(std::clamp(kRays / std::max<std::size_t>(n, 1), kFewestRays, kMostRays));
+  const bool has_open_air = problem.lights.sky || !problem.lights.suns.empty();
   std::vector<OpeningSphere> spheres;
   for (const LightArea& opening : problem.lights.sky_openings()) spheres.emplace_back(opening);
   constexpr std::uint32_t kNothing = 0xffffffff;
@@ -71,11 +76,11 @@ Sight look_around(const Problem& problem, std::uint64_t seed, const Monitor& mon
       problem.rays.first_hits(patches, around, hits);
       for (std::size_t k = 0; k < rays; ++k) {
         const Hit& hit = hits[k];
-        if (hit.escaped() ? !problem.lights.sky : !hit.patch.valid()) continue;
+        if (hit.escaped() ? !has_open_air : !hit.patch.valid()) continue;
         seen[i * rays + k] = hit.escaped() ? air : hit.patch.value;
-        parted[i * rays + k] = hit.reflected || hit.transmittance != Spectrum(1.0) ||
-                               passes_an_opening(problem, spheres, around[k],
-                                                 hit.escaped() ? problem.rays.diameter() : hit.distance);
+        parted[i * rays + k] =
+            hit.reflected || hit.transmittance != Spectrum(1.0) ||
+            passes_an_opening(problem, spheres, around[k], hit.escaped() ? problem.rays.diameter() : hit.distance);
       }
     }
   });
@@ -114,7 +119,7 @@ std::vector<std::uint32_t> hand_labels_on(const Sight& sight, std::vector<std::u
       if (is_fixed[i] || sight.of(i).empty()) continue;
       voted.clear();
       for (const Sight::Edge& e : sight.of(i)) {
-        if (e.parted) continue;
+        if (e.parted || (sweep < kSweepsAlone && is_fixed[e.other])) continue;
         if (votes[label[e.other]] == 0) voted.push_back(label[e.other]);
         votes[label[e.other]] += e.weight;
       }
@@ -126,7 +131,7 @@ std::vector<std::uint32_t> hand_labels_on(const Sight& sight, std::vector<std::u
       changed += best != label[i];
       label[i] = best;
     }
-    if (changed * 1000 < order.size()) break;
+    if (sweep >= kSweepsAlone && changed * 1000 < order.size()) break;
   }
   return label;
 }
@@ -198,12 +203,13 @@ std::vector<std::uint32_t> named_room_of(const PatchSet& patches, const NamedRoo
   parallel_for(room.size(), 256, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       for (std::size_t r = 0; r < named.by_surface.size() && room[i] == kNone; ++r)
-        if (named.by_surface[r].second[patches.surface(PatchId{i}).value])
+        if (named.by_surface[r].has_surface[patches.surface(PatchId{i}).value])
           room[i] = static_cast<std::uint32_t>(named.spaces.size() + r);
       const auto c = patches.corner_positions(PatchId{i});
       const Vec3 p = (c[0] + c[1] + c[2]) / 3 + patches.normal[i] * kOffWall + patches.origin;
       for (std::size_t s = 0; s < boxes.size() && room[i] == kNone; ++s)
-        if (named.spaces[s].has_volume() && boxes[s].touches(Box::around(std::span(&p, 1))) && contains(named.spaces[s], p))
+        if (named.spaces[s].has_volume() && boxes[s].touches(Box::around(std::span(&p, 1))) &&
+            contains(named.spaces[s], p))
           room[i] = static_cast<std::uint32_t>(s);
     }
   });
@@ -249,11 +255,11 @@ Rooms find_rooms(const Problem& problem, const NamedRooms& named, std::uint64_t 
   std::size_t nameless = 0;
   for (const std::uint32_t l : order) {
     number[l] = static_cast<std::uint32_t>(rooms.names.size());
-    rooms.names.push_back(l == air                    ? "outdoors"
-                          : l == small                ? "smaller spaces"
-                          : l < named.spaces.size()   ? named.spaces[l].name
-                          : l < named_count           ? named.by_surface[l - named.spaces.size()].first
-                                                      : "room " + std::to_string(++nameless));
+    rooms.names.push_back(l == air                  ? "outdoors"
+                          : l == small              ? "smaller spaces"
+                          : l < named.spaces.size() ? named.spaces[l].name
+                          : l < named_count         ? named.by_surface[l - named.spaces.size()].name
+                                                    : "room " + std::to_string(++nameless));
   }
   rooms.of_patch.resize(n);
   for (std::size_t i = 0; i < n; ++i) rooms.of_patch[i] = number[label[i]];

@@ -15,13 +15,14 @@ namespace clerestory {
 
 struct Rooms {
   std::vector<std::uint32_t> of_patch;  ///< N, a number below names.size()
-  std::vector<std::string> names;       ///< "outdoors" first, where there is any; then by area, the largest first; last "smaller spaces"
+  std::vector<std::string>
+      names;  ///< "outdoors" first, where there is any; then by area, the largest first; last "smaller spaces"
 };
 
-/// A room that the scene names by its surfaces, or the model by a volume.
+/// Rooms that models name by volumes (scene's frame [m]), and the scene by surfaces; these go first.
 struct NamedRooms {
-  std::span<const NamedSpace> spaces;                       ///< scene's frame [m]
-  std::vector<std::pair<std::string, std::vector<bool>>> by_surface;  ///< name, and by SurfaceId whether it is in there
+  std::span<const NamedSpace> spaces;
+  std::span<const NamedSurfaces> by_surface;
 };
 
 /// Patches that see each other belong together, but not through glass, in mirrors or through the openings that the sky

@@ -229,7 +229,7 @@ TEST(WarnAboutResult, SaysHowMuchLightIsMissingOrTooMuch) {
   warn_about_result(solved, too_much);
   EXPECT_TRUE(any_says(too_much.warnings, "15.0 % more light than was sent"));
   solved.solution.energy.absorbed = 18.9;
-  solved.error = MeasuredError{.rms_relative = 0.3, .p95_relative = 0.2, .samples = 64, .confidence = 0.1};
+  solved.error = MeasuredError{{.rms_relative = 0.3, .p95_relative = 0.2, .samples = 64, .confidence = 0.1}};
   Listener error;
   warn_about_result(solved, error);
   ASSERT_EQ(error.warnings.size(), 1u);
@@ -243,7 +243,7 @@ TEST(WarnAboutResult, SaysWhenTheErrorOfTheSensorsIsLargeOrNotKnown) {
     warn_about_result(solved, listener);
     return listener.warnings;
   };
-  solved.error_sensors = MeasuredError{.rms_relative = 0.3, .p95_relative = 0.2, .samples = 64, .confidence = 0.1};
+  solved.error_sensors = MeasuredError{{.rms_relative = 0.3, .p95_relative = 0.2, .samples = 64, .confidence = 0.1}};
   ASSERT_EQ(warnings().size(), 1u);
   EXPECT_TRUE(any_says(warnings(), "the measured error of the sensors is 30.0 % rms"));
   solved.error_sensors.reset();  // no path found the 20 W/m2 that they show

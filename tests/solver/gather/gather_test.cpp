@@ -81,9 +81,14 @@ TEST(MeasuredError, IsNothingForAnExactFieldAndFindsAFieldThatIsFivePerCentTooBr
     lightmap.corners.push_back({static_cast<std::uint32_t>(3 * i), static_cast<std::uint32_t>(3 * i + 1),
                                 static_cast<std::uint32_t>(3 * i + 2)});
   lightmap.E = Field(3 * patches.patch_count(), 1);
+  Solution solution;
+  solution.rays = 5'000'000;
+  solution.E = solution.B = Field(patches.patch_count(), 1);
+  for (double& E : solution.E.value) E = 6;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) solution.B.set(i, patches.M[i] + patches.rho[i] * 6);
   for (const double factor : {1.0, 1.05}) {
     for (double& E : lightmap.E.value) E = 6 * factor;
-    const MeasuredError error = measure_error(problem, lightmap, effort(Accuracy::standard).error, 5'000'000, 1);
+    const MeasuredError error = measure_error(problem, lightmap, solution, effort(Accuracy::standard).error, 1);
     EXPECT_GE(error.samples, 256u);
     EXPECT_NEAR(error.rms_relative, factor - 1, std::max(error.confidence, 0.005)) << factor;
     EXPECT_LT(error.confidence, 0.02);

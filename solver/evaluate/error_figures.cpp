@@ -1,0 +1,165 @@
+#include "solver/evaluate/error_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace clerestory {
+namespace {
+
+/// Weighted means over comparisons.
+class Samples {
+ public:
+  explicit Samples(std::span<const Comparison> samples) : samples_(samples) {
+    for (const Comparison& s : samples_) weights_ += s.weight / count();
+  }
+  double count() const { return static_cast<double>(samples_.size()); }
+  template <class Of>
+  double mean(const Of& of) const {
+    double sum = 0;
+    for (const Comparison& s : samples_) sum += share(s) * of(s) / count();
+    return sum;
+  }
+  template <class Is>
+  bool all(const Is& is) const {
+    return std::ranges::all_of(samples_, is);
+  }
+  /// Standard error of that mean.
+  template <class Of>
+  double std_error(const Of& of) const {
+    const double m = mean(of);
+    double squares = 0;
+    for (const Comparison& s : samples_) squares += std::pow(share(s) * (of(s) - m), 2);
+    return std::sqrt(squares) / count();
+  }
+  /// Standard deviation of the mean of what has these.
+  template <class Of>
+  double deviation(const Of& of) const {
+    double squares = 0;
+    for (const Comparison& s : samples_) squares += std::pow(share(s) * of(s), 2);
+    return std::sqrt(squares) / count();
+  }
+  /// The value below which lies the share p of all.
+  template <class Of>
+  double percentile(double p, const Of& of) const {
+    std::vector<std::pair<double, double>> values;
+    for (const Comparison& s : samples_) values.push_back({of(s), share(s)});
+    std::sort(values.begin(), values.end());
+    double below = 0;
+    return std::find_if(values.begin(), values.end() - 1,
+                        [&](const auto& v) { return (below += v.second) > p * (count() - 1); })
+        ->first;
+  }
+
+ private:
+  double share(const Comparison& s) const { return s.weight / weights_; }  // 1 in the mean
+  std::span<const Comparison> samples_;
+  double weights_ = 0;
+};
+
+constexpr double kConfidence = 1.96;  ///< standard errors in the half-width of a 95 % interval
+
+double squared(double x) { return x * x; }
+
+/// What is known of the mean square error.
+struct Squares {
+  double mean = 0, half_width = 0;  ///< of its 95 % interval: which points were looked at, and noise
+  double noise = 0;                 ///< the same of the references' noise alone
+  double level = 0;                 ///< mean of the references
+  double observed = 0;              ///< the mean square with the references' noise
+  double also = 0;                  ///< an error that may be there as well [of level]
+};
+
+template <class ReferenceOf>
+ErrorFigures figures_of(const Samples& samples, const Squares& s, const ReferenceOf& reference_of) {
+  ErrorFigures e;
+  e.samples = static_cast<std::size_t>(samples.count());
+  const double at_most = std::max(s.mean, 0.0) + s.half_width + squared(s.also * s.level);
+  const double upper = std::sqrt(at_most) / s.level;
+  e.bound = s.mean <= s.noise;
+  e.rms_relative = e.bound ? upper : std::sqrt(s.mean) / s.level;
+  e.confidence = e.bound ? upper : upper - e.rms_relative;
+  // Right when errors are distributed like the noise, and too large when few large errors make up the variance. A
+  // distribution fitted to what lies behind the noise was tried: it took tails for noise and was low by a quarter.
+  const double left = e.bound ? at_most : s.mean;
+  const double without_noise = s.observed > left ? std::sqrt(left / s.observed) : 1;
+  const auto relative = [&](const Comparison& c) {
+    // Points much darker than the mean would make a share of nothing.
+    return std::abs(c.x - reference_of(c)) / std::max(reference_of(c), 0.05 * s.level);
+  };
+  e.median_relative = samples.percentile(0.5, relative) * without_noise;
+  e.p95_relative = samples.percentile(0.95, relative) * without_noise;
+  return e;
+}
+
+ErrorFigures by_paths(const Samples& samples, double level) {
+  const auto difference = [](const Comparison& c) { return squared(c.x - c.r) - squared(c.std_error); };
+  // Of d2 - s2, e being what is not noise of d: 4 e2 s2 + 2 s4.
+  const auto noise = [&](const Comparison& c) {
+    return std::sqrt(4 * std::max(difference(c), 0.0) * squared(c.std_error) + 2 * squared(squared(c.std_error)));
+  };
+  Squares s{samples.mean(difference),
+            kConfidence * samples.std_error(difference),
+            kConfidence * samples.deviation(noise),
+            level,
+            0,
+            0};
+  s.observed = samples.mean([](const Comparison& c) { return squared(c.x - c.r); });
+  return figures_of(samples, s, [](const Comparison& c) { return c.r; });
+}
+
+ErrorFigures by_gathers(const Samples& samples) {
+  const auto gathered = [](const Comparison& c) { return (c.gather + c.other_gather) / 2; };
+  const double level = samples.mean(gathered);
+  constexpr double kNoChance = 2.5;  // standard errors: one part in eighty is taken for wrong that is not
+  const auto off = [&](const Comparison& c) { return (c.r - gathered(c)) / level; };
+  const double ratio = samples.mean(off), ratio_error = samples.std_error(off);
+  const double factor = std::abs(ratio) > kNoChance * ratio_error ? std::max(1 + ratio, 0.01) : 1;
+  const auto reference = [&](const Comparison& c) { return factor * gathered(c); };
+  const auto product = [&](const Comparison& c) { return (c.x - factor * c.gather) * (c.x - factor * c.other_gather); };
+  // Of (x - g1)(x - g2), where g1 - g2 has twice the variance of each.
+  const auto noise = [&](const Comparison& c) {
+    const double d2 = squared(factor * (c.gather - c.other_gather));
+    return std::sqrt(squared(c.x - reference(c)) * d2 + d2 * d2 / 4);
+  };
+  Squares s{samples.mean(product),
+            kConfidence * samples.std_error(product),
+            kConfidence * samples.deviation(noise),
+            factor * level,
+            0,
+            kConfidence * ratio_error};
+  s.observed = samples.mean([&](const Comparison& c) { return squared(c.x - reference(c)); });
+  if (samples.all([](const Comparison& c) { return c.element >= 0; })) {
+    const auto residual = [&](const Comparison& c) { return (gathered(c) - c.element) / level; };
+    const double albedo = samples.mean([&](const Comparison& c) { return c.albedo * c.element; }) /
+                          std::max(samples.mean([](const Comparison& c) { return c.element; }), 1e-30 * level);
+    const double most = (std::abs(samples.mean(residual)) + kConfidence * samples.std_error(residual)) / (1 - albedo);
+    s.also = std::min(s.also, most);
+  }
+  // Where gathers are wrong in some places only.
+  const auto scatter = [&](const Comparison& c) { return squared(c.r - reference(c)) - squared(c.std_error); };
+  const double more = samples.mean(scatter), more_error = samples.std_error(scatter);
+  if (more > kNoChance * more_error) {
+    s.mean += more;
+    s.observed += more;
+    s.half_width = std::hypot(s.half_width, kConfidence * more_error);
+  }
+  return figures_of(samples, s, reference);
+}
+
+}  // namespace
+
+ErrorFigures summarise(std::span<const Comparison> comparisons) {
+  if (comparisons.empty()) return {};
+  const Samples samples(comparisons);
+  const double level = samples.mean([](const Comparison& c) { return c.r; });
+  if (!std::isfinite(level)) throw std::logic_error("a reference of the measured error is no number");
+  if (!(level > 0)) return {};  // in the dark there is nothing to be wrong about
+  const bool has_gathers = std::ranges::all_of(comparisons, [](const Comparison& c) { return c.gather >= 0; }) &&
+                           samples.mean([](const Comparison& c) { return c.gather + c.other_gather; }) > 0;
+  return has_gathers ? by_gathers(samples) : by_paths(samples, level);
+}
+
+}  // namespace clerestory

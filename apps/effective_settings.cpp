@@ -17,6 +17,8 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   if (arguments.max_element) s.max_element = arguments.max_element;
   if (arguments.detail) s.detail = arguments.detail;
   if (arguments.target_error) s.target_error = arguments.target_error;
+  if (arguments.error_samples) s.error_samples = arguments.error_samples;
+  if (arguments.no_error) s.error_samples = 0;
   if (arguments.time_limit) s.time_limit = arguments.time_limit;
   if (arguments.memory_limit) s.memory_limit = to_memory_size(*arguments.memory_limit);
   if (arguments.channels) s.channels = *arguments.channels == "1" ? 1 : 3;
@@ -36,6 +38,7 @@ std::vector<Figure> as_figures(const Settings& s, int channels, const ReadOption
   if (s.max_element) out.push_back({"max_element", *s.max_element});
   if (s.detail) out.push_back({"detail", *s.detail});
   if (s.target_error) out.push_back({"target_error", *s.target_error});
+  if (s.error_samples) out.push_back({"error_samples", static_cast<long long>(*s.error_samples)});
   if (s.time_limit) out.push_back({"time_limit", *s.time_limit});
   if (s.memory_limit) out.push_back({"memory_limit", static_cast<long long>(*s.memory_limit)});
   if (read.unit) out.push_back({"unit", *read.unit});

@@ -14,6 +14,7 @@
 #include "meshing/triangle_quality.h"
 #include "solver/model/box.h"
 #include "solver/model/error.h"
+#include "solver/model/triangle_size.h"
 
 namespace clerestory {
 namespace {
@@ -29,9 +30,9 @@ double total_area(const FaceComplex& complex) {
   return area;
 }
 
-/// A mesh of edges up to h has triangles of 0.21 h2 in the mean; area alone decides, so that the choice scales.
+/// Area alone decides, so that the choice scales.
 double default_element(const FaceComplex& complex, const MeshOptions& options) {
-  return std::sqrt(total_area(complex) / (0.21 * std::max(1.0, options.target_triangles)));
+  return longest_edge_for(std::max(1.0, options.target_triangles), total_area(complex));
 }
 
 /// The bound on edges that was asked for, in the working frame.

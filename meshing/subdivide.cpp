@@ -8,6 +8,7 @@
 #include "meshing/cells.h"
 #include "meshing/divided_lines.h"
 #include "solver/model/parallel.h"
+#include "solver/model/triangle_size.h"
 
 namespace clerestory {
 namespace {
@@ -306,14 +307,14 @@ class RegionMesh {
 
 double estimate_triangles(const FaceComplex& complex, const std::vector<PlanarDomain>& domains, double area,
                           double longest) {
-  // A mesh of edges up to h has mean triangles of about 0.21 h2; lines that are shorter than h add their own.
+  // Lines that are shorter than the longest edge add their own triangles.
   double pieces = 0;
   for (const PlanarDomain& d : domains)
     for (const Ends& l : d.lines) {
       const double len = length(complex.vertices[l[1]] - complex.vertices[l[0]]);
       pieces += std::ceil(len / (kLineShare * longest));
     }
-  return area / (0.21 * longest * longest) + pieces;
+  return area / (kMeanTriangle * longest * longest) + pieces;
 }
 
 /// The edges of a region's triangle along which an outline runs.

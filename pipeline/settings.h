@@ -12,13 +12,15 @@ namespace clerestory {
 
 struct Settings {
   SolveOptions solve;
-  std::optional<int> channels{};              ///< 1 or 3; empty: what the scene needs
-  std::optional<double> max_element{};        ///< longest edge [m]; empty: by accuracy and size
-  std::optional<double> detail{};             ///< surfaces are simplified by no more [m]; empty: by max_element
-  std::optional<double> target_error{};       ///< RMS relative [1]
-  std::optional<double> time_limit{};         ///< [s]
-  std::optional<std::size_t> memory_limit{};  ///< of the whole process [bytes]
-  bool debug = false;                         ///< show what the hierarchical method did
+  std::optional<int> channels{};               ///< 1 or 3; empty: what the scene needs
+  std::optional<double> max_element{};         ///< longest edge [m]; empty: by accuracy and size
+  std::optional<double> detail{};              ///< surfaces are simplified by no more [m]; empty: by max_element
+  std::optional<double> target_error{};        ///< RMS relative [1]
+  std::optional<std::size_t> error_samples{};  ///< points that the error is measured at, of surfaces and of sensors; 0:
+                                               ///< it is not measured; empty: by accuracy and number of rooms
+  std::optional<double> time_limit{};          ///< [s]
+  std::optional<std::size_t> memory_limit{};   ///< of the whole process [bytes]
+  bool debug = false;                          ///< show what the hierarchical method did
 
   /// The time limit counts from here, so that reading the scene may be part of it; empty: from solve_scene() on.
   std::optional<std::chrono::steady_clock::time_point> start{};

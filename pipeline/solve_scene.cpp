@@ -101,13 +101,16 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         lap.add_to(seconds.reconstruct);
 
         // -> how wrong both are, as far as there is time: a little after the limit, too.
-        const ErrorEffort spend = effort(options.accuracy, options.tighten).error;
+        const bool measures = settings.error_samples.value_or(1) > 0;
+        ErrorEffort spend = effort(options.accuracy, options.tighten).error;
+        spend.asked_points = settings.error_samples;
         Monitor measuring = monitor;
         if (monitor.is_late())
           measuring.deadline =
               std::min(std::chrono::steady_clock::now() + kTimeToMeasure, monitor.deadline + 3 * kTimeToMeasure);
-        out.error = if_measured(measure_error(problem, solved.lightmap, solution, spend, options.seed, measuring));
-        if (at_planes.complete()) {
+        if (measures)
+          out.error = if_measured(measure_error(problem, solved.lightmap, solution, spend, options.seed, measuring));
+        if (measures && at_planes.complete()) {
           const auto [planes, sets, E] = without(*buried, sensors, scene.sensors, at_planes.E);
           out.error_sensors =
               if_measured(measure_sensor_error(problem, planes, sets, E, solution, spend, options.seed, measuring));

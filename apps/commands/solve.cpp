@@ -156,6 +156,14 @@ void add_solve_command(CLI::App& program, Task& task) {
                    "by what the hierarchical method refines: error, or bf, the classic flux at stake (default: error)");
   add_positive_option(command, "--target-error", s.target_error, "SHARE",
                       "go on until the measured RMS relative error is below this, 0.02 for 2 %");
+  command.add_flag("--no-error", s.no_error, "do not measure the error of the result")->excludes("--target-error");
+  command
+      .add_option(
+          "--error-samples", s.error_samples,
+          "points that the error is measured at, up to 4096 (default: by accuracy and rooms, 4 to 12 % of the time)")
+      ->type_name("N")
+      ->check(CLI::Range(8, 4096))
+      ->excludes("--no-error");
   add_positive_option(command, "--time-limit", s.time_limit, "S", "stop solving after so many seconds");
   add_checked_word(command, "--memory-limit", s.memory_limit, problem_with_memory,
                    "coarser rather than more memory than this: 500MiB, 2GiB, or a number of MiB (default: none)")

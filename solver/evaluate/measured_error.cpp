@@ -135,7 +135,9 @@ std::vector<Comparison> compare(const Problem& problem, const std::vector<Compar
       std::max(kShareOfRays * static_cast<double>(solution.rays), effort.rays) / rays_per_path;
   const double points = static_cast<double>(std::min(samples.size(), effort.points));
   const int paths = std::clamp(static_cast<int>(affordable / points), kFewestPaths, effort.paths);
-  const auto count = std::min(samples.size(), std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));
+  const auto wanted =
+      effort.asked_points.value_or(std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));
+  const auto count = std::min(samples.size(), wanted);
   const auto number_of = [&](std::size_t k) { return k * samples.size() / count; };
   References all = trace(count, key, paths, number_of);
   if (all.at.size() < pilot.at.size()) return pilot.at;

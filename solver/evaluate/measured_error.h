@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ struct ErrorEffort {
   int paths;             ///< a point, before there are more points
   double rays;           ///< at least; what the result took asks for more
   GatherQuality gather;  ///< of each of two gathers
+  std::optional<std::size_t> asked_points{};  ///< so many, whatever they cost
 };
 
 /// Compares the lightmap (linear between its points) with references at random points of the surfaces.

@@ -143,6 +143,30 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
 
 namespace {
 
+/// What counts in a room.
+struct Scale {
+  double area = 0;  ///< A0 [m2]
+  double dark = 0;  ///< irradiance below which an element counts as if it had that
+};
+
+/// By room. leaves: with the irradiance E.
+std::vector<Scale> scales_of(const PatchSet& patches, const PatchSet& leaves, const Field& E) {
+  const auto room_of = [](const PatchSet& p, std::size_t i) { return p.room.empty() ? 0u : p.room[i]; };
+  std::vector<Scale> scales(std::max<std::size_t>(1, patches.rooms.size()));
+  std::vector<double> count(scales.size());
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    scales[room_of(patches, i)].area += patches.area[i];
+    ++count[room_of(patches, i)];
+  }
+  std::vector<bool> is_there(leaves.patch_count());
+  for (std::uint32_t r = 0; r < scales.size(); ++r) {
+    scales[r].area /= std::clamp(count[r], kFewestPatches, kMostPatches);
+    for (std::size_t i = 0; i < is_there.size(); ++i) is_there[i] = room_of(leaves, i) == r;
+    scales[r].dark = kDark * area_median(leaves, E, is_there);
+  }
+  return scales;
+}
+
 double triangle_area(const std::array<Vec3, 3>& c) { return length(cross(c[1] - c[0], c[2] - c[0])) / 2; }
 
 }  // namespace
@@ -150,9 +174,7 @@ double triangle_area(const std::array<Vec3, 3>& c) { return length(cross(c[1] - 
 std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E, const Field& B,
                    const RefineOptions& options, unsigned long long& rays, const Monitor& monitor) {
   const PatchSet& patches = mesh.patches();
-  const double total = patches.total_area();
-  const double A0 = total / std::clamp(static_cast<double>(patches.patch_count()), kFewestPatches, kMostPatches);
-  const double dark = kDark * area_median(light.problem.patches, E);
+  const std::vector<Scale> scales = scales_of(patches, light.problem.patches, E);
   std::vector<std::uint32_t> candidates = mesh.leaves(), marked;
   std::size_t halved = 0;
   for (int pass = 0; pass < kMostHalvings && !candidates.empty() && !monitor.should_stop(); ++pass) {
@@ -165,13 +187,14 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
         const PatchId p{std::size_t{mesh[e].patch}};
         const double edge = mesh.longest_edge(e);
         const auto corners = mesh.corner_positions(e);
-        const double weight = luminous_mean(patches.albedo(p)) * triangle_area(corners) / A0;
+        const Scale& scale = scales[patches.room.empty() ? 0 : patches.room[p]];
+        const double weight = luminous_mean(patches.albedo(p)) * triangle_area(corners) / scale.area;
         // Little varies by more than twice its mean between four parts.
-        if (edge < 2 * options.shortest_edge || 2 * weight < options.tolerance / 2) continue;
+        if (edge < 2 * options.shortest_edge.of(patches, p) || 2 * weight < options.tolerance / 2) continue;
         const Variation v = irradiance_variation(light, B, corners, patches.normal[p],
                                                  stream_key(options.seed, kVariationProbe, e), spent[k]);
         if (v.difference > options.tolerance * v.E &&
-            weight * v.difference > options.tolerance / 2 * std::max(v.E, dark))
+            weight * v.difference > options.tolerance / 2 * std::max(v.E, scale.dark))
           stake[k] = static_cast<float>(weight * v.difference);
       }
     });

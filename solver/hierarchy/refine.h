@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/hierarchy/shortest_edge.h"
 #include "solver/illumination/illumination.h"
 #include "solver/model/monitor.h"
 
@@ -11,7 +12,7 @@ namespace clerestory {
 
 struct RefineOptions {
   double tolerance = 0.1;
-  double shortest_edge = 0;  ///< [m]
+  ShortestEdge shortest_edge{};
   std::size_t most_elements = 1'000'000;
   std::uint64_t seed = 1;
 };
@@ -31,8 +32,9 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
 
 /// Halves elements, and the halves again up to four times, while light varies inside of them by more than
 ///   difference > tolerance E   and   rho (A / A0) difference > tolerance / 2 * max(E, a quarter of the median E).
-/// A0 is the size of a patch if all were alike, of 2,000 to 10,000: what a small or a dark element gets wrong is little
-/// of the light that goes on from it. Each looks with its own rays at the light as it was found on the leaves before.
+/// A0 is the size of a patch of the room if all were alike, of 2,000 to 10,000; the median is the room's. What a small
+/// or a dark element gets wrong is little of the light that goes on from it. Each looks with its own rays at the light
+/// as it was found on the leaves before.
 ///
 /// returns  elements halved for their own sake; neighbours that conformity asks for are not counted.
 std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E, const Field& B,

@@ -95,8 +95,8 @@ class Cutter {
         const bool two_ends = runs[i] == ShadowRun::straight || runs[i] == ShadowRun::bent;
         const bool is_fit =
             two_ends ? runs[i] == ShadowRun::straight && longest <= kLongest : runs[i] != ShadowRun::crooked;
-        const bool may_halve = longest >= 2 * options_.shortest_edge && round < kMostRounds &&
-                               mesh_.leaf_count() + 4 * marked.size() < options_.most_elements;
+        const bool may_halve = longest >= 2 * options_.shortest_edge.of(mesh_.patches(), mesh_[candidates[i]].patch) &&
+                               round < kMostRounds && mesh_.leaf_count() + 4 * marked.size() < options_.most_elements;
         if (!is_fit && may_halve)
           marked.push_back(candidates[i]);
         else

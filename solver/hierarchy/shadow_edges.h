@@ -4,13 +4,14 @@
 #include <cstddef>
 
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/hierarchy/shortest_edge.h"
 #include "solver/illumination/problem.h"
 #include "solver/model/monitor.h"
 
 namespace clerestory {
 
 struct ShadowEdgeOptions {
-  double shortest_edge = 0;  ///< elements are not halved below this [m]
+  ShortestEdge shortest_edge{};  ///< elements are not halved below this
   std::size_t most_elements = 1'000'000;
 };
 

@@ -15,11 +15,15 @@
 namespace clerestory {
 namespace {
 
-/// The darkest irradiance whose relative error counts, as share of the mean.
+/// The darkest irradiance whose relative error counts, as share of the room's mean.
 constexpr double kDark = 0.02;
 /// Share of the difference between corners that may hide a shadow which lies between them.
 constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
+/// Where light that is not straight from sun and luminaires is off by more than so many times the tolerance, edges may
+/// be shorter than the shortest in proportion, down to that share of it: at the feet of furniture and in window
+/// reveals.
+constexpr double kMuchOff = 3, kFinest = 0.25;
 /// Shortest edges: so far off the pilot rays of a point tell enough, where it has nearly the same horizon (cosine).
 constexpr double kNearby = 4, kSameHorizon = 0.95;
 /// Of the sun and luminaires at the point that sent them: where there is less, what is little beside them is not.
@@ -55,21 +59,24 @@ double most_delta_light(const Problem& problem, double shortest_edge) {
 
 /// For each point worth a gather one that stands for it: itself, or another on the same surface that is no further off
 /// than that and whose normal is no more off than by that cosine.
-std::vector<std::uint32_t> stand_ins(const ElementMesh& mesh, const std::vector<bool>& worth, double distance,
-                                     double cosine) {
+///
+/// edges  shortest edges; times of them is the distance.
+std::vector<std::uint32_t> stand_ins(const ElementMesh& mesh, const std::vector<bool>& worth, const ShortestEdge& edges,
+                                     double times, double cosine) {
   const VertexLightmap& at = mesh.points();
   std::vector<std::uint32_t> stand_in(at.position.size(), VertexLightmap::kNone);
-  const auto serves = [&](std::uint32_t q, std::uint32_t p) {
+  const auto serves = [&](std::uint32_t q, std::uint32_t p, double distance) {
     return q != VertexLightmap::kNone && length(at.position[q] - at.position[p]) <= distance &&
            dot(at.sample_normal[at.sample_begin[q]], at.sample_normal[at.sample_begin[p]]) > cosine;
   };
   for (const std::uint32_t leaf : mesh.leaves()) {
     const auto point = mesh.points_of(leaf);
+    const double distance = times * edges.of(mesh.patches(), mesh[leaf].patch);
     for (const std::uint32_t p : point) {
       if (!worth[p] || stand_in[p] != VertexLightmap::kNone) continue;
       stand_in[p] = p;
       for (const std::uint32_t q : point)
-        if (q != p && serves(stand_in[q], p)) stand_in[p] = stand_in[q];
+        if (q != p && serves(stand_in[q], p, distance)) stand_in[p] = stand_in[q];
     }
   }
   return stand_in;
@@ -85,11 +92,11 @@ class Gatherer {
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
         layers_(layers),
-        most_delta_(most_delta_light(problem, options.shortest_edge)),
+        most_delta_(most_delta_light(problem, options.shortest_edge.least())),
         worth_(worth_a_gather(mesh, options.most_points)),
         plans_(pilots_ ? mesh.points().position.size() : 0) {
-    if (pilots_) pilot_of_ = stand_ins(mesh, worth_, kNearby * options.shortest_edge, kSameHorizon);
-    same_as_ = stand_ins(mesh, worth_, kSamePlace * options.tolerance * options.shortest_edge, VertexLightmap::kAlike);
+    if (pilots_) pilot_of_ = stand_ins(mesh, worth_, options.shortest_edge, kNearby, kSameHorizon);
+    same_as_ = stand_ins(mesh, worth_, options.shortest_edge, kSamePlace * options.tolerance, VertexLightmap::kAlike);
   }
 
   /// False when the monitor stopped it.
@@ -257,8 +264,11 @@ std::vector<std::uint32_t> known_leaves(const ElementMesh& mesh, const std::vect
 /// Leaves that interpolate worse than the tolerance, the worst first.
 std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options) {
   std::vector<Candidate> worst;
-  for (const auto& [leaf, off, E, std_error] : leaf_errors(mesh, field)) {
-    if (!(mesh.longest_edge(leaf) > options.shortest_edge)) continue;
+  for (const auto& [leaf, off, soft, E, std_error] : leaf_errors(mesh, field)) {
+    const PatchId patch{std::size_t{mesh[leaf].patch}};  // light through a slit falls on less than any element
+    const double finer =
+        mesh.patches().has_outline(patch) ? 1 : std::clamp(kMuchOff * options.tolerance * E / soft, kFinest, 1.0);
+    if (!(mesh.longest_edge(leaf) > finer * options.shortest_edge.of(mesh.patches(), mesh[leaf].patch))) continue;
     if (off > std::max(options.tolerance * E, std_error)) worst.push_back({off / E, leaf});
   }
   std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
@@ -271,27 +281,35 @@ std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& fi
 
 std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& field) {
   const std::vector<std::uint32_t> leaves = known_leaves(mesh, field.known);
-  std::vector<double> E(field.E.size());
-  for (std::size_t p = 0; p < E.size(); ++p) E[p] = luminous_mean(field.E[p]);
+  std::vector<double> E(field.E.size()), soft_E(E.size());
+  for (std::size_t p = 0; p < E.size(); ++p) {
+    E[p] = luminous_mean(field.E[p]);
+    soft_E[p] = E[p] - luminous_mean(field.delta_light[p]);
+  }
   const auto mean = [](const std::array<std::uint32_t, 3>& point, const std::vector<double>& of) {
     return (of[point[0]] + of[point[1]] + of[point[2]]) / 3;
   };
-  double flux = 0, area = 0;
+  const PatchSet& patches = mesh.patches();
+  const auto room_of = [&](std::uint32_t leaf) { return patches.room.empty() ? 0u : patches.room[mesh[leaf].patch]; };
+  std::vector<double> flux(std::max<std::size_t>(1, patches.rooms.size())), area(flux.size());
   for (const std::uint32_t leaf : leaves) {
-    flux += mesh[leaf].area * mean(mesh.points_of(leaf), E);
-    area += mesh[leaf].area;
+    flux[room_of(leaf)] += mesh[leaf].area * mean(mesh.points_of(leaf), E);
+    area[room_of(leaf)] += mesh[leaf].area;
   }
-  const double dark = area > 0 ? kDark * flux / area : 0;
-  const std::vector<Vec3> gradient = gradients(mesh, leaves, E);
+  const std::vector<Vec3> gradient = gradients(mesh, leaves, E), soft_gradient = gradients(mesh, leaves, soft_E);
   std::vector<LeafError> errors;
   for (const std::uint32_t leaf : leaves) {
     const auto point = mesh.points_of(leaf);
     const auto x = mesh.corner_positions(leaf);
-    double off = 0;
-    for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, gradient, k)));
-    const auto [low, high] = std::minmax({E[point[0]], E[point[1]], E[point[2]]});
-    if (!mesh[leaf].penumbra) off = std::max(off, kSteep * (high - low));
-    errors.push_back({leaf, off, std::max(mean(point, E), dark), mean(point, field.std_error)});
+    const auto off_in = [&](const std::vector<double>& of, const std::vector<Vec3>& slope) {
+      double off = 0;
+      for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, slope, k)));
+      const auto [low, high] = std::minmax({of[point[0]], of[point[1]], of[point[2]]});
+      return mesh[leaf].penumbra ? off : std::max(off, kSteep * (high - low));
+    };
+    errors.push_back({leaf, off_in(E, gradient), off_in(soft_E, soft_gradient),
+                      std::max(mean(point, E), kDark * flux[room_of(leaf)] / area[room_of(leaf)]),
+                      mean(point, field.std_error)});
   }
   return errors;
 }

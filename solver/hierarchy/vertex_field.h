@@ -2,6 +2,7 @@
 // Irradiance at vertices, with more of them where straight lines between them would be wrong.
 
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/hierarchy/shortest_edge.h"
 #include "solver/illumination/light_rows.h"
 #include "solver/illumination/problem.h"
 #include "solver/model/monitor.h"
@@ -11,8 +12,8 @@
 namespace clerestory {
 
 struct FieldOptions {
-  double tolerance = 0.05;   ///< an element is halved where interpolation may err by more, of the irradiance there [1]
-  double shortest_edge = 0;  ///< no edge up to this length is halved [m]
+  double tolerance = 0.05;  ///< an element is halved where interpolation may err by more, of the irradiance there [1]
+  ShortestEdge shortest_edge{};  ///< no edge up to this length is halved, a quarter where interpolation is far off
   /// Points that are gathered. Where the lightmap alone has more, those of the smallest elements are left to the
   /// caller, who knows what their element receives; else no element is halved beyond.
   std::size_t most_points = 400'000;
@@ -54,6 +55,7 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
 struct LeafError {
   std::uint32_t leaf;  ///< element of the mesh
   double off;          ///< how far the middle of an edge may lie off the straight line
+  double soft;         ///< the same without sun and luminaires, whose edges no halving resolves
   double E;            ///< irradiance there; at least the darkest that counts
   double std_error;    ///< standard error at the vertices
 };

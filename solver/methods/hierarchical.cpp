@@ -208,7 +208,7 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   for (int* rays : {&quality.links.bundle_rays, &quality.links.bright_rays})
     while (*rays * receivers > kMostRays && *rays >= 64) *rays /= 2;
   if (!merges(n, quality.links)) quality.links.uniform = 0;
-  quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge);
+  quality.links.cluster_diameter = receiver_size(mesh.patches(), options.shortest_edge.anywhere);
   quality.links.sky_views = keep || !light.sky.dark();
   Transport transport;
   if (options.oracle == Oracle::error) {
@@ -221,7 +221,8 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
                               {kStakeByTolerance * options.tolerance * first_flux, options.seed}, monitor);
     for (const std::uint32_t p : links.to_halve) {
       const std::uint32_t e = round.element[p];
-      if (mesh.longest_edge(e) >= 2 * options.shortest_edge) round.to_halve.push_back(e);
+      if (mesh.longest_edge(e) >= 2 * options.shortest_edge.of(mesh.patches(), mesh[e].patch))
+        round.to_halve.push_back(e);
     }
     transport = std::move(links.transport);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "solver/hierarchy/element_mesh.h"
+#include "solver/hierarchy/shortest_edge.h"
 #include "solver/illumination/problem.h"
 #include "solver/methods/kept_transport.h"
 #include "solver/model/hierarchy_debug.h"
@@ -16,11 +17,11 @@ namespace clerestory {
 /// The defaults are the recommended values; nobody should need others.
 struct HierarchyOptions {
   Oracle oracle = Oracle::error;
-  int bundle_rays = 256;     ///< from each receiver
-  int bright_rays = 128;     ///< pairs with bright sources from each receiver
-  double tolerance = 0.1;    ///< of an element's irradiance: it is halved while light varies more inside of it [1]
-  double shortest_edge = 0;  ///< elements are not halved below this [m]
-  double residual = 1e-6;    ///< stop when the flux not yet in balance / emitted flux is below this [1]
+  int bundle_rays = 256;         ///< from each receiver
+  int bright_rays = 128;         ///< pairs with bright sources from each receiver
+  double tolerance = 0.1;        ///< of an element's irradiance: it is halved while light varies more inside of it [1]
+  ShortestEdge shortest_edge{};  ///< elements are not halved below this
+  double residual = 1e-6;        ///< stop when the flux not yet in balance / emitted flux is below this [1]
   std::size_t most_elements = 1'000'000;  ///< no more are made by halving
   std::uint64_t seed = 1;
   HierarchyDebug* debug = nullptr;  ///< filled with the last round that was done

@@ -178,10 +178,6 @@ Field field_on_leaves(const ElementMesh& mesh, std::span<const std::uint32_t> tr
   return E;
 }
 
-bool has_outlines(const PatchSet& patches, std::size_t patch) {
-  return !patches.outlines.empty() && patches.outlines[patches.triangle[patch]][patches.side[patch]] != 0;
-}
-
 /// Beside what ends a little off the surface light may fall through a slit, on a strip that no vertex tells of: only
 /// rays from all over the element know its flux. Scales the leaves of such elements to E of the transport.
 void keep_flux_at_outlines(const ElementMesh& mesh, std::span<const std::uint32_t> transport_leaves,
@@ -191,7 +187,7 @@ void keep_flux_at_outlines(const ElementMesh& mesh, std::span<const std::uint32_
   std::size_t begin = 0;
   for (std::size_t j = 0; j < transport_leaves.size(); ++j) {
     const std::size_t end = begin + mesh.leaves_under(transport_leaves[j]);
-    if (has_outlines(mesh.patches(), mesh[transport_leaves[j]].patch))
+    if (mesh.patches().has_outline(PatchId{std::size_t{mesh[transport_leaves[j]].patch}}))
       for (int c = 0; c < E.channels; ++c) {
         double flux = 0, area = 0;
         for (std::size_t k = begin; k < end; ++k) {
@@ -223,7 +219,7 @@ void correct_flux(const HierarchicalSolution& coarse, std::span<const std::uint3
     double found = 0, exact = 0;
     for (std::size_t j = 0, i = 0; j < transport_leaves.size(); ++j) {
       const std::size_t end = i + mesh.leaves_under(transport_leaves[j]);
-      if (has_outlines(mesh.patches(), mesh[transport_leaves[j]].patch)) {
+      if (mesh.patches().has_outline(PatchId{std::size_t{mesh[transport_leaves[j]].patch}})) {
         i = end;
         continue;
       }
@@ -252,7 +248,7 @@ void fill_unknown(const ElementMesh& mesh, const std::vector<std::uint32_t>& tra
 
 void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<3>& out) {
   std::vector<double> interpolation, std_error, halvings;
-  for (const auto& [leaf, off, E, std_error_there] : leaf_errors(mesh, field)) {
+  for (const auto& [leaf, off, soft, E, std_error_there] : leaf_errors(mesh, field)) {
     out.shapes.push_back(mesh.corner_positions(leaf));
     interpolation.push_back(E > 0 ? off / E : 0);
     std_error.push_back(E > 0 ? std_error_there / E : 0);

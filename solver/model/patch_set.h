@@ -85,6 +85,8 @@ struct PatchSet {
   /// The patch that a ray meets in its triangle t (T counted before splits), at barycentric weights u, v of corners
   /// 1, 2.
   PatchId patch_at(TriangleId t, Side side, double u, double v) const;
+  /// Whether something ends a little off the patch, over one of its edges.
+  bool has_outline(PatchId p) const { return !outlines.empty() && outlines[triangle[p]][side[p]] != 0; }
   /// Corner positions of patch p, counter-clockwise seen from its side.
   std::array<Vec3, 3> corner_positions(PatchId p) const;
   double total_area() const;

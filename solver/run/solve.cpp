@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "solver/model/error.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
+#include "solver/model/triangle_size.h"
 #include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
@@ -65,12 +67,24 @@ void require_possible(const Problem& problem, const SolveOptions& options) {
                      std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive or path"));
 }
 
+/// A room is resolved as it would be alone, in a model of its faces and as many behind them.
+ShortestEdge shortest_edges(const PatchSet& patches, double longest_edge, const Effort& e, int tighten) {
+  ShortestEdge edges = e.shortest_edge * longest_edge;
+  if (patches.rooms.empty()) return edges;
+  std::vector<double> area(patches.rooms.size());
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) area[patches.room[i]] += patches.area[i];
+  const double finer = e.shortest_edge * std::pow(kTighterEdge, tighten);
+  for (const double a : area)
+    edges.in_room.push_back(std::min(edges.anywhere, finer * longest_edge_for(e.triangles_to_halve, 2 * a)));
+  return edges;
+}
+
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
                                  const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
   require_possible(problem, options);
   const Effort e = effort_of(options);
   const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeastPlan);
-  const double shortest_edge = e.shortest_edge * longest_edge;
+  const ShortestEdge shortest_edge = shortest_edges(problem.patches, longest_edge, e, options.tighten);
   HierarchicalField field = hierarchical_field(problem, std::move(map),
                                                {.elements = {.oracle = options.oracle,
                                                              .bundle_rays = plan.bundle_rays,

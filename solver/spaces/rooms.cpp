@@ -15,8 +15,8 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kRays = 1 << 19;  ///< in all, about
-constexpr std::size_t kFewestRays = 8, kMostRays = 64;
+constexpr std::size_t kRays = 1 << 17;  ///< in all, about
+constexpr std::size_t kFewestRays = 8, kMostRays = 32;
 constexpr int kSweeps = 24;
 /// So long those that have a name, and the open air, have no vote: all of one label at once, they would run through a
 /// door while those behind it still have a label each.
@@ -175,7 +175,14 @@ void join_labels(const Sight& sight, std::vector<std::uint32_t>& label, const st
     std::map<std::uint32_t, bool> was_joined;
     for (const auto& [sum, l] : by_size) {
       const auto found = best.find(l);
-      if (is_named[l] || found == best.end() || found->second.weight <= 0 || was_joined[l]) continue;
+      if (found == best.end() || found->second.weight <= 0 || was_joined[l]) continue;
+      if (is_named[l]) {  // what a name was given to but a part of takes the name
+        const std::uint32_t whole = found->second.other;
+        if (l == air || is_named[whole] || joins.contains(whole) || was_joined[whole]) continue;
+        joins[whole] = l;
+        was_joined[l] = true;
+        continue;
+      }
       if (joins.contains(found->second.other)) continue;
       joins[l] = found->second.other;
       was_joined[found->second.other] = true;

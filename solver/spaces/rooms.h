@@ -31,7 +31,7 @@ struct NamedRooms {
 ///
 /// Labels are handed on by the majority of what each patch sees (Raghavan et al. 2007), then those that see too much of
 /// another are joined to it.
-/// Threads: same result for any number. Cost: about half a million rays, 8 at least a patch.
+/// Threads: same result for any number. Cost: about a hundred thousand rays, 8 at least a patch.
 Rooms find_rooms(const Problem& problem, const NamedRooms& named, std::uint64_t seed, const Monitor& monitor = {});
 
 }  // namespace clerestory

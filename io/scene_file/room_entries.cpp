@@ -26,7 +26,7 @@ void read_room_entries(const Json& rooms, const std::string& file_name, Scene& s
       }
       if (!any)
         scene.warnings.push_back(text(entry.place("surfaces"), ": '", quotable(pattern.get<std::string>()),
-                                      "' matches no surface; the names are those that clerestory check tells"));
+                                      "' matches no surface; surfaces have the names of the model's objects"));
     }
     scene.rooms.push_back(std::move(room));
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -158,12 +159,22 @@ std::vector<Scale> scales_of(const PatchSet& patches, const PatchSet& leaves, co
     scales[room_of(patches, i)].area += patches.area[i];
     ++count[room_of(patches, i)];
   }
-  std::vector<bool> is_there(leaves.patch_count());
-  for (std::uint32_t r = 0; r < scales.size(); ++r) {
-    scales[r].area /= std::clamp(count[r], kFewestPatches, kMostPatches);
-    for (std::size_t i = 0; i < is_there.size(); ++i) is_there[i] = room_of(leaves, i) == r;
-    scales[r].dark = kDark * area_median(leaves, E, is_there);
+  struct Lit {
+    std::uint32_t room;
+    double light, area;
+  };
+  std::vector<Lit> lit(leaves.patch_count());
+  std::vector<double> half(scales.size());
+  for (std::size_t i = 0; i < lit.size(); ++i) {
+    lit[i] = {room_of(leaves, i), luminous_mean(E[i]), leaves.area[i]};
+    half[lit[i].room] += leaves.area[i] / 2;
   }
+  std::ranges::sort(lit, {}, [](const Lit& l) { return std::pair(l.room, l.light); });
+  for (const Lit& l : lit) {  // up to the median
+    if (half[l.room] > 0) scales[l.room].dark = kDark * l.light;
+    half[l.room] -= l.area;
+  }
+  for (std::size_t r = 0; r < scales.size(); ++r) scales[r].area /= std::clamp(count[r], kFewestPatches, kMostPatches);
   return scales;
 }
 

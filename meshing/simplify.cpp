@@ -119,9 +119,7 @@ std::optional<SimplerPart> simpler(const FaceComplex& complex, const FinePart& p
     return mesh.vertex_handle(static_cast<unsigned>(std::ranges::lower_bound(vertices, v) - vertices.begin()));
   };
   for (const Face& f : original)
-    if (!mesh.add_face(in_mesh(f.corner[0]), in_mesh(f.corner[1]), in_mesh(f.corner[2])).is_valid()) {
-      return {};
-    }
+    if (!mesh.add_face(in_mesh(f.corner[0]), in_mesh(f.corner[1]), in_mesh(f.corner[2])).is_valid()) return {};
   mesh.update_face_normals();
 
   OpenMesh::Decimater::DecimaterT<PartMesh> decimater(mesh);
@@ -145,23 +143,19 @@ std::optional<SimplerPart> simpler(const FaceComplex& complex, const FinePart& p
 
   SimplerPart result;
   for (const auto f : mesh.faces()) {  // those that are left
-    Face face = original[static_cast<std::size_t>(f.idx())];
+    const Face& was = original[static_cast<std::size_t>(f.idx())];
+    Face now = was;
     std::size_t k = 0;
-    std::array<std::uint32_t, 3> corner{};
-    for (const auto v : mesh.fv_range(f)) corner[k++] = vertices[static_cast<std::size_t>(v.idx())];
-    Face now = face;
-    now.corner = corner;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto at = std::ranges::find(face.corner, corner[i]);
-      now.read_at[i] =
-          at == face.corner.end() ? Face::kNone : face.read_at[static_cast<std::size_t>(at - face.corner.begin())];
+    for (const auto v : mesh.fv_range(f)) {
+      now.corner[k] = vertices[static_cast<std::size_t>(v.idx())];
+      const auto at = static_cast<std::size_t>(std::ranges::find(was.corner, now.corner[k]) - was.corner.begin());
+      now.read_at[k++] = at < was.corner.size() ? was.read_at[at] : Face::kNone;
     }
     result.faces.push_back(now);
   }
   if (static_cast<double>(result.faces.size()) > (1 - kLeastGain) * static_cast<double>(original.size())) return {};
   const auto before = places(complex, original), after = places(complex, result.faces);
   const auto out = farthest_distance(after, before, detail), in = farthest_distance(before, after, detail);
-
   if (!out || !in) return {};
   result.moved = std::max(*out, *in);
   return result;
@@ -181,6 +175,7 @@ void simplify(FaceComplex& complex, std::span<const Material> materials, double 
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) simplified[k] = simpler(complex, parts[k], detail, monitor);
   });
+  omerr().enable();
 
   std::vector<bool> gone(complex.faces.size());
   double moved = 0;

@@ -10,11 +10,11 @@
 
 namespace clerestory {
 
-/// Merges facets narrower than 2 `detail` of closed, finely tessellated parts (a railing's tubes, a beam's fillets):
-/// vertices go, none moves. Surfaces stay within `detail` of where they were, in both directions, and no facet turns by
-/// more than 15 degrees, so that what is bent smoothly stays so. Wider facets stay in their planes, and with them what
-/// touches. A part whose distance is not shown to be within the bound, or that would
-/// lose less than a tenth of its faces stays as it was.
+/// Merges facets narrower than 2 `detail` of finely tessellated parts (a railing's tubes, a beam's fillets): vertices
+/// go, none moves, and those of rims stay. Surfaces stay within `detail` of where they were, in both directions, and no
+/// facet turns by more than 15 degrees, so that what is bent smoothly stays so. Wider facets stay in their planes, and
+/// with them what touches. A part whose distance is not shown to be within the bound, or that would lose less than a
+/// tenth of its faces stays as it was. Ends with FaceComplex::flat empty, and no face without area.
 ///
 /// detail  [working frame]; 0: nothing is done.
 /// Threads: same result for any number.

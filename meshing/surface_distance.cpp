@@ -74,15 +74,11 @@ std::optional<double> farthest_distance(std::span<const TriangleCorners> from, s
       const Piece piece = left.back();
       left.pop_back();
       const double reached = std::ranges::max(piece.off), bound = surface.bound(piece);
-      if (reached > most) {
-        return {};
-      }
-      if (bound <= std::max(farthest, std::min(most, reached + most / 4))) {
+      if (reached > most || (bound > most && piece.halvings == kHalvings)) return {};
+      const bool is_close = bound <= std::max(farthest, std::min(most, reached + most / 4));
+      if (is_close || piece.halvings == kHalvings) {
         farthest = std::max(farthest, bound);
         continue;
-      }
-      if (piece.halvings == kHalvings) {
-        return {};
       }
       // Across the longest edge.
       std::size_t k = 0;

@@ -43,11 +43,6 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
   if (!p.lit_sides.space.empty())
     for (std::size_t i = 0; i < p.patches.patch_count(); ++i)
       p.patches.space.push_back(p.lit_sides.space[2 * p.patches.triangle[i] + p.patches.side[i]]);
-  if (has_light(scene) && !monitor.is_interrupted()) {
-    Rooms rooms = find_rooms(p.problem(), {scene.spaces, scene.rooms}, settings.solve.seed, monitor);
-    p.patches.room = std::move(rooms.of_patch);
-    p.patches.rooms = std::move(rooms.names);
-  }
   lap.add_to(seconds.build);
   return p;
 }
@@ -63,7 +58,8 @@ std::size_t memory_after_reading(std::size_t limit, const MeshReport& repairs) {
                    "; raise --memory-limit, or leave out detail of the model.");
 }
 
-std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, const Scene& scene,
+/// Rooms, and points to show the light on.
+std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, const Scene& scene, const Monitor& monitor,
                                            StageSeconds& seconds) {
   if (!prepared) return {};
   if (prepared->patches.patch_count() == 0) {
@@ -72,6 +68,9 @@ std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, con
     throw InputError(why);
   }
   Lap lap;
+  Rooms rooms = find_rooms(prepared->problem(), {scene.spaces, scene.rooms}, monitor);
+  prepared->patches.room = std::move(rooms.of_patch);
+  prepared->patches.rooms = std::move(rooms.names);
   VertexLightmap map = make_lightmap(prepared->patches);
   lap.add_to(seconds.build);
   return PreparedToSolve{std::move(*prepared), std::move(map)};
@@ -86,13 +85,14 @@ std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, co
 
 std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& settings, Observer& observer,
                                                 const Monitor& monitor, StageSeconds& seconds) {
-  if (!settings.memory_limit) return with_points(prepare(scene, settings, monitor, seconds), scene, seconds);
+  if (!settings.memory_limit) return with_points(prepare(scene, settings, monitor, seconds), scene, monitor, seconds);
   const std::size_t limit = *settings.memory_limit, faces = scene.polygons.face_count();
   const double asked = settings.max_element.value_or(0), wanted = target_triangles(settings.solve);
   std::size_t fit = triangles_that_fit(faces, limit);
   if (fit == 0) refuse_memory(scene, least_memory({faces, faces, faces, faces, faces}), limit);
   for (std::size_t last = std::numeric_limits<std::size_t>::max();; fit /= 2) {
-    auto p = with_points(prepare_in(static_cast<double>(fit), scene, settings, monitor, seconds), scene, seconds);
+    auto p =
+        with_points(prepare_in(static_cast<double>(fit), scene, settings, monitor, seconds), scene, monitor, seconds);
     if (!p) return {};
     const auto& [patches, repairs, rays, lights, lit_sides] = p->scene;
     settings.solve.memory_limit = memory_after_reading(limit, repairs);

@@ -57,12 +57,12 @@ Clock::time_point deadline(const Settings& s) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*s.time_limit));
 }
 
-/// Of the worst room and the worst set of sensors, for sure.
+/// Of the worst room and the worst set of sensors, for sure; what nobody knows counts as 100 %.
 double worst_error(const Solved& s) {
   const auto of = [](const std::optional<MeasuredError>& error) {
     if (!error) return 0.0;
     const ErrorOfPart* worst = error->worst();
-    return std::max(error->upper(), worst ? worst->figures.upper() : 0.0);
+    return std::max({error->upper(), worst ? worst->figures.upper() : 0.0, error->unknown().empty() ? 0.0 : 1.0});
   };
   return std::max(of(s.error), of(s.error_sensors));
 }

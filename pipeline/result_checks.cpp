@@ -26,6 +26,19 @@ void warn_about_energy(const EnergyBalance& energy, Observer& observer) {
                               "fine or a smaller --max-element.");
 }
 
+/// Light that no path of the measurement met may come through a gap too small for them.
+void warn_about_unknown(const Solved& s, Observer& observer) {
+  if (!s.error || s.solution.stop != StopReason::converged) return;
+  const std::vector<const ErrorOfPart*> unknown = s.error->unknown();
+  if (unknown.empty()) return;
+  const ErrorOfPart& brightest = **std::ranges::max_element(unknown, {}, &ErrorOfPart::mean_illuminance);
+  observer.warn("how wrong '" + brightest.name + "' " +
+                (unknown.size() > 1 ? "and " + counted(unknown.size() - 1, "other room") + " are" : std::string("is")) +
+                ", is not known: it shows " + rounded(brightest.mean_illuminance) +
+                " lx in the mean, but no light was found on the paths that measure the error there. Do not rely on it; "
+                "try --error-samples 4096, or look for a small gap in the model.");
+}
+
 void warn_about_error(const Solved& s, Observer& observer) {
   if (!s.error || s.settings.target_error) return;  // a target that is missed is said by who asked for it
   const double stated = effort(s.settings.solve.accuracy).vertex_tolerance;
@@ -71,6 +84,7 @@ void warn_about_sensors(const Solved& s, Observer& observer) {
 void warn_about_result(const Solved& solved, Observer& observer) {
   if (solved.empty()) return;
   warn_about_energy(solved.solution.energy, observer);
+  warn_about_unknown(solved, observer);
   warn_about_error(solved, observer);
   warn_about_sensors(solved, observer);
 }

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 namespace clerestory {
 namespace {
+
+constexpr double kNoChance = 2.5;  ///< standard errors: one part in eighty is taken for wrong that is not
 
 /// Weighted means over comparisons.
 class Samples {
@@ -21,6 +25,17 @@ class Samples {
     double sum = 0;
     for (const Comparison& s : samples_) sum += share(s) * of(s) / count();
     return sum;
+  }
+  /// Whether the mean is not 0 by chance, and not by a hundredth of the points, or one, alone.
+  template <class Of>
+  bool is_no_chance(const Of& of) const {
+    const double m = mean(of);
+    if (!(std::abs(m) > kNoChance * std_error(of))) return false;
+    std::vector<double> terms;
+    for (const Comparison& s : samples_) terms.push_back(share(s) * of(s) / count() * (m > 0 ? 1 : -1));
+    std::ranges::sort(terms, std::greater<>());
+    const auto few = static_cast<std::ptrdiff_t>(1 + terms.size() / 100);
+    return std::accumulate(terms.begin() + few, terms.end(), 0.0) > std::abs(m) / 2;
   }
   template <class Is>
   bool all(const Is& is) const {
@@ -113,10 +128,12 @@ ErrorFigures by_paths(const Samples& samples, double level) {
 ErrorFigures by_gathers(const Samples& samples) {
   const auto gathered = [](const Comparison& c) { return (c.gather + c.other_gather) / 2; };
   const double level = samples.mean(gathered);
-  constexpr double kNoChance = 2.5;  // standard errors: one part in eighty is taken for wrong that is not
   const auto off = [&](const Comparison& c) { return (c.r - gathered(c)) / level; };
-  const double ratio = samples.mean(off), ratio_error = samples.std_error(off);
-  const double factor = std::abs(ratio) > kNoChance * ratio_error ? std::max(1 + ratio, 0.01) : 1;
+  const double ratio = samples.mean(off), ratio_error = kConfidence * samples.std_error(off);
+  // Where most paths find nothing, the few that do tell no mean.
+  const bool paths_can_judge = samples.mean([](const Comparison& c) { return c.r > 0 ? 1.0 : 0.0; }) > 0.5;
+  const bool is_off = paths_can_judge && samples.is_no_chance(off);
+  const double factor = is_off ? std::max(1 + ratio, 0.01) : 1;
   const auto reference = [&](const Comparison& c) { return factor * gathered(c); };
   const auto product = [&](const Comparison& c) { return (c.x - factor * c.gather) * (c.x - factor * c.other_gather); };
   // Of (x - g1)(x - g2), where g1 - g2 has twice the variance of each.
@@ -129,9 +146,9 @@ ErrorFigures by_gathers(const Samples& samples) {
             kConfidence * samples.deviation(noise),
             factor * level,
             0,
-            kConfidence * ratio_error};
+            paths_can_judge ? ratio_error : std::abs(ratio) + ratio_error};
   s.observed = samples.mean([&](const Comparison& c) { return squared(c.x - reference(c)); });
-  if (samples.all([](const Comparison& c) { return c.element >= 0; })) {
+  if (paths_can_judge && samples.all([](const Comparison& c) { return c.element >= 0; })) {
     const auto residual = [&](const Comparison& c) { return (gathered(c) - c.element) / level; };
     const double albedo = samples.mean([&](const Comparison& c) { return c.albedo * c.element; }) /
                           std::max(samples.mean([](const Comparison& c) { return c.element; }), 1e-30 * level);
@@ -140,11 +157,15 @@ ErrorFigures by_gathers(const Samples& samples) {
   }
   // Where gathers are wrong in some places only.
   const auto scatter = [&](const Comparison& c) { return squared(c.r - reference(c)) - squared(c.std_error); };
-  const double more = samples.mean(scatter), more_error = samples.std_error(scatter);
-  if (more > kNoChance * more_error) {
+  // What a single bright path brings has a standard error like itself.
+  const auto told = [&](const Comparison& c) {
+    return std::abs(c.r - reference(c)) > 4 * c.std_error ? squared(c.r - reference(c)) : 0;
+  };
+  const double more = samples.mean(scatter);
+  if (paths_can_judge && more > kNoChance * samples.std_error(scatter) && samples.mean(told) > more / 2) {
     s.mean += more;
     s.observed += more;
-    s.half_width = std::hypot(s.half_width, kConfidence * more_error);
+    s.half_width = std::hypot(s.half_width, kConfidence * samples.std_error(scatter));
   }
   return figures_of(samples, s, reference);
 }

@@ -38,7 +38,8 @@ struct Comparison {
 /// error is as much times 1 / (1 - albedo): the residual of the radiosity equation. And paths judge it: by the ratio of
 /// all of them to all gathers, which corrects the gathers where it is no chance, and by how much more they scatter
 /// around these than their own noise allows. The smaller of what ratio and residual leave possible is in the
-/// confidence.
+/// confidence. Where most paths find no light, as in a room lit through a crack, they correct nothing, and how far off
+/// they are is in the confidence.
 ///
 /// Where nothing is left of the mean square beyond what chance may leave, all are upper bounds.
 /// Source: U-statistics for the variance of paired estimates (Hoeffding 1948).

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -27,20 +26,30 @@ constexpr std::size_t kFewestPoints = 8;  ///< in rooms so bright that paths har
 constexpr std::size_t kMostPoints = 1 << 12;
 
 constexpr std::size_t kPointsOfRoom = 24;  ///< at least, in the mean
+constexpr double kLargeRoom = 0.01;        ///< share of all area
 constexpr double kShareOfRays = 0.03;      ///< of those that the result took
 
 }  // namespace
 
-const ErrorOfPart* MeasuredError::worst() const {
-  constexpr double kLeastArea = 0.01;
+bool MeasuredError::counts(const ErrorOfPart& part) const {
   double area = 0;
-  for (const ErrorOfPart& part : parts) area += part.area;
+  for (const ErrorOfPart& p : parts) area += p.area;
+  return part.area >= kLargeRoom * area;
+}
+
+const ErrorOfPart* MeasuredError::worst() const {
   const ErrorOfPart* worst = nullptr;
   for (const ErrorOfPart& part : parts)
-    if (part.figures.samples > 0 && part.area >= kLeastArea * area &&
-        (!worst || part.figures.rms_relative > worst->figures.rms_relative))
+    if (counts(part) && part.figures.samples > 0 && (!worst || part.figures.rms_relative > worst->figures.rms_relative))
       worst = &part;
   return worst;
+}
+
+std::vector<const ErrorOfPart*> MeasuredError::unknown() const {
+  std::vector<const ErrorOfPart*> found;
+  for (const ErrorOfPart& part : parts)
+    if (part.figures.samples == 0 && part.mean_illuminance > (counts(part) ? 0 : 1)) found.push_back(&part);
+  return found;
 }
 
 namespace {
@@ -50,16 +59,10 @@ MeasuredError summarise_parts(const std::vector<Comparison>& comparisons, std::v
   MeasuredError error{summarise(comparisons)};
   std::vector<std::vector<Comparison>> of_part(parts.size());
   for (const Comparison& c : comparisons) of_part[c.part].push_back(c);
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    parts[k].figures = summarise(of_part[k]);
-  }
+  for (std::size_t k = 0; k < parts.size(); ++k) parts[k].figures = summarise(of_part[k]);
   error.parts = std::move(parts);
   return error;
 }
-
-}  // namespace
-
-namespace {
 
 struct References {
   std::vector<Comparison> at;  ///< those that were finished
@@ -147,66 +150,67 @@ std::vector<Comparison> compare(const Problem& problem, const std::vector<Compar
   return all.at;
 }
 
-}  // namespace
-
-namespace {
-
 /// Patches one after another, room after room, each as long as its chance to be looked at.
 class PatchesByRoom {
  public:
   PatchesByRoom(const PatchSet& patches, const Field& E)
-      : order_(patches.patch_count()),
+      : patches_(patches),
+        order_(patches.patch_count()),
         cumulative_(patches.patch_count()),
-        parts_(std::max<std::size_t>(1, patches.rooms.size())) {
+        parts_(std::max<std::size_t>(1, patches.rooms.size())),
+        weight_(parts_.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
-    const auto room_of = [&](std::uint32_t i) { return patches.room.empty() ? 0u : patches.room[i]; };
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](std::uint32_t i, std::uint32_t j) { return room_of(i) < room_of(j); });
+    std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) { return room_of(i); });
     for (std::size_t k = 0; k < patches.rooms.size(); ++k) parts_[k].name = patches.rooms[k];
     if (patches.rooms.empty()) parts_[0].name = "all surfaces";
-    double all = 0, roots = 0, large = 0;
-    for (const std::uint32_t i : order_) parts_[room_of(i)].area += patches.area[i], all += patches.area[i];
+    const double all = patches.total_area();
     if (!(all > 0)) return;
-    const auto is_large = [&](double area) { return area >= kLargeRoom * all; };
-    for (const std::uint32_t i : order_)
-      parts_[room_of(i)].mean_illuminance += photometric(E[i]) * patches.area[i] / parts_[room_of(i)].area;
-    for (const ErrorOfPart& p : parts_) roots += std::sqrt(p.area), large += is_large(p.area);
-    std::vector<double> weight;
-    for (const ErrorOfPart& p : parts_) {
+    for (const std::uint32_t i : order_) {
+      parts_[room_of(i)].area += patches.area[i];
+      parts_[room_of(i)].mean_illuminance += photometric(E[i]) * patches.area[i];
+    }
+    double roots = 0, large = 0;
+    for (ErrorOfPart& p : parts_) {
+      if (p.area > 0) p.mean_illuminance /= p.area;
+      roots += std::sqrt(p.area), large += p.area >= kLargeRoom * all;
+    }
+    large_rooms_ = static_cast<std::size_t>(large);
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
       // A third of the looks go by area, a third by its root, and a third to each large room alike.
-      const double looks = (p.area / all + std::sqrt(p.area) / roots + (is_large(p.area) ? 1 / large : 0)) / 3;
-      weight.push_back(looks > 0 ? p.area / all / looks : 0);
+      const double a = parts_[k].area;
+      const double looks = (a / all + std::sqrt(a) / roots + (a >= kLargeRoom * all ? 1 / large : 0)) / 3;
+      weight_[k] = looks > 0 ? a / all / looks : 0;
     }
     for (std::size_t k = 0; k < order_.size(); ++k) {
-      const double w = weight[room_of(order_[k])];
-      cumulative_[k] = total_ += w > 0 ? patches.area[order_[k]] / w : 0;
-      sample_of_.push_back({0, 0, 0, w, room_of(order_[k])});
+      const double weight = weight_[room_of(order_[k])];
+      cumulative_[k] = total_ += weight > 0 ? patches.area[order_[k]] / weight : 0;
     }
-    rooms_to_tell_ = static_cast<std::size_t>(large);
   }
 
   double total() const { return total_; }
-  std::size_t rooms_to_tell() const { return rooms_to_tell_; }
-  std::vector<ErrorOfPart> parts() const { return parts_; }
+  std::size_t large_rooms() const { return large_rooms_; }
+  const std::vector<ErrorOfPart>& parts() const { return parts_; }
   struct Found {
     std::size_t patch;
-    Comparison sample;  ///< weight and part
+    std::uint32_t room;
+    double weight;
   };
   Found at(double place) const {
     const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), place);
     const std::size_t k =
         std::min<std::size_t>(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1);
-    return {order_[k], sample_of_[k]};
+    return {order_[k], room_of(order_[k]), weight_[room_of(order_[k])]};
   }
 
  private:
-  static constexpr double kLargeRoom = 0.01;  ///< of all area
+  std::uint32_t room_of(std::uint32_t i) const { return patches_.room.empty() ? 0u : patches_.room[i]; }
+  const PatchSet& patches_;
   std::vector<std::uint32_t> order_;
   std::vector<double> cumulative_;
-  std::vector<Comparison> sample_of_;
   std::vector<ErrorOfPart> parts_;
+  std::vector<double> weight_;
   double total_ = 0;
-  std::size_t rooms_to_tell_ = 0;
+  std::size_t large_rooms_ = 0;
 };
 
 }  // namespace
@@ -222,9 +226,10 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
   std::vector<ReceivingPoint> places(kMostPoints);
   RandomStream random(seed, kErrorPoints);
   for (std::size_t s = 0; s < kMostPoints; ++s) {
-    const auto [i, sample] =
+    const auto [i, room, weight_of_room] =
         by_room.at((static_cast<double>(s) + random.uniform()) / static_cast<double>(kMostPoints) * by_room.total());
-    samples[s] = sample;
+    samples[s].part = room;
+    samples[s].weight = weight_of_room;
     samples[s].element = luminous_mean(solution.E[i]);
     samples[s].albedo = luminous_mean(patches.albedo(i));
     const double u = random.uniform(), v = random.uniform();
@@ -236,7 +241,7 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
                  patches.normal[i]};
   }
   ErrorEffort spend = effort;
-  spend.points = std::min(kMostPoints, std::max(effort.points, kPointsOfRoom * by_room.rooms_to_tell()));
+  spend.points = std::min(kMostPoints, std::max(effort.points, kPointsOfRoom * by_room.large_rooms()));
   return summarise_parts(compare(
                              {patches, rays, problem.lights}, samples, [&](std::size_t i) { return places[i]; },
                              solution, spend, stream_key(seed, kErrorPaths), monitor),

@@ -22,14 +22,18 @@ namespace clerestory {
 struct ErrorOfPart {
   std::string name;
   double area = 0;              ///< [m2]; of sensors 0
-  double mean_illuminance = 0;  ///< of the references [lx]
+  double mean_illuminance = 0;  ///< of the result [lx]
   ErrorFigures figures;         ///< samples is 0 where no path found light
 };
 
 struct MeasuredError : ErrorFigures {
   std::vector<ErrorOfPart> parts{};  ///< as PatchSet::rooms, or as the sets of sensors
-  /// The part whose error is the largest, of those with light and a hundredth of the area at least; none in the dark.
+  /// Whether a part counts by itself: it has a hundredth of all area at least, or is a set of sensors.
+  bool counts(const ErrorOfPart& part) const;
+  /// That of the largest error; none where none is known.
   const ErrorOfPart* worst() const;
+  /// Parts with light of which no path knows: those that count, and smaller ones of more than a lux.
+  std::vector<const ErrorOfPart*> unknown() const;
 };
 
 /// What a measurement may cost. Paths grow like 1 / (1 - rho): a bright room gets fewer of them, at fewer points, and a
@@ -50,13 +54,13 @@ struct ErrorEffort {
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const Solution& solution,
                             const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor = {});
 
-/// Compares sensor values with references at the sensor points; at an even choice of them where there are many.
-///
-/// sets  names, with the number of the first point behind each.
 struct PointsOfSet {
   std::string name;
-  std::size_t end = 0;
+  std::size_t end = 0;  ///< number of the first point behind it
 };
+/// Compares sensor values with references at the sensor points; at an even choice of them where there are many.
+///
+/// sets  whose points follow each other.
 MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points,
                                    std::span<const PointsOfSet> sets, const Field& E, const Solution& solution,
                                    const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor = {});

@@ -265,10 +265,11 @@ std::vector<std::uint32_t> known_leaves(const ElementMesh& mesh, const std::vect
 std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options) {
   std::vector<Candidate> worst;
   for (const auto& [leaf, off, soft, E, std_error] : leaf_errors(mesh, field)) {
-    const PatchId patch{std::size_t{mesh[leaf].patch}};  // light through a slit falls on less than any element
-    const double finer =
-        mesh.patches().has_outline(patch) ? 1 : std::clamp(kMuchOff * options.tolerance * E / soft, kFinest, 1.0);
-    if (!(mesh.longest_edge(leaf) > finer * options.shortest_edge.of(mesh.patches(), mesh[leaf].patch))) continue;
+    const PatchId patch{std::size_t{mesh[leaf].patch}};
+    double shortest = options.shortest_edge.of(mesh.patches(), patch);
+    if (!mesh.patches().has_outline(patch))  // what comes through a slit falls on less than any element
+      shortest *= std::clamp(kMuchOff * options.tolerance * E / soft, kFinest, 1.0);
+    if (!(mesh.longest_edge(leaf) > shortest)) continue;
     if (off > std::max(options.tolerance * E, std_error)) worst.push_back({off / E, leaf});
   }
   std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {

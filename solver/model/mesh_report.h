@@ -21,7 +21,7 @@ struct MeshReport {
   std::size_t t_junctions = 0;          ///< vertices found inside another face's edge, now shared
   std::size_t imprinted_contacts = 0;   ///< lines where surfaces touch or cross, now edges of both
   std::size_t imprinted_outlines = 0;   ///< lines over which something ends a little off a surface, now edges of it
-  std::size_t simplified_parts = 0;     ///< closed parts whose finest facets were merged
+  std::size_t simplified_parts = 0;     ///< parts whose finest facets were merged
   std::size_t simplified_faces = 0;     ///< faces that went with that
   double simplified_by = 0;             ///< no surface was moved farther by it [m]
   std::size_t non_manifold_edges = 0;   ///< edges of more than two faces (not a defect by itself)

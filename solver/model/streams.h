@@ -28,7 +28,6 @@ enum Stream : std::uint64_t {
   kLuminaireRays = 0x32,
   kLuminaireSearch = 0x33,
   kOpeningRays = 0x34,
-  kRoomRays = 0x35,
   // Methods, by patch or pair of them.
   kShots = 0x41,
   kPathsOfPatch = 0x51,
@@ -49,6 +48,9 @@ enum Stream : std::uint64_t {
   kGapRays = 0x81,
   kGapsSifted = 0x82,
   kGapsSiftedAgain = 0x83,
+  // Rooms, by patch and sweep; in the seed's place as well.
+  kRoomRays = 0x85,
+  kRoomOrder = 0x86,
   // Hierarchy, by receiver, element or link.
   kBundle = 0x91,
   kBrightPairs = 0x92,

@@ -87,7 +87,7 @@ constexpr Effort kFine{
     .noisy_patches = {.bundle = {16, 256, 1024}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 1024,
     .paths_of_sensor = 4096,
-    .error = {.points = 512, .paths = 512, .rays = 1e6, .gather = {{16, 512, 1024}, {1, 4, 0.005, 2048}, 128, 32}},
+    .error = {.points = 512, .paths = 512, .rays = 1e6, .gather = {{16, 256, 512}, {1, 3, 0.01, 512}, 64, 32}},
 };
 
 void tighten(GatherQuality& quality, int times) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "solver/model/box.h"
 #include "solver/model/parallel.h"
@@ -15,8 +17,8 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kRays = 1 << 17;  ///< in all, about
-constexpr std::size_t kFewestRays = 8, kMostRays = 32;
+/// So many of the largest patches tell what the rooms are, and with how many rays; the others find out where they are.
+constexpr std::size_t kDeciding = 1 << 14, kRays = 1 << 17, kFewestRays = 8, kMostRays = 32, kRaysOfOthers = 4;
 constexpr int kSweeps = 24;
 /// So long those that have a name, and the open air, have no vote: all of one label at once, they would run through a
 /// door while those behind it still have a label each.
@@ -25,12 +27,24 @@ constexpr double kLeastRoom = 1e-3;  ///< of all area: what is smaller and has n
 /// Two groups are one room when the smaller one sends more of its light to the other, or less to itself.
 constexpr double kMostBetween = 0.1, kLeastWithin = 0.5;
 
-/// Who sees whom: symmetric, by patch; the number after the last patch stands for the open air.
+constexpr std::uint32_t kNone = 0xffffffff;
+
+/// What rays from some patches meet.
+struct Views {
+  struct Meeting {
+    std::uint32_t what = kNone;  ///< a patch, or the number after the last one for the open air
+    bool parted = false;         ///< by glass, a mirror or an opening
+  };
+  std::size_t rays = 0;           ///< of each
+  std::vector<Meeting> meetings;  ///< in the order of the patches
+};
+
+/// Who sees whom among the patches that decide and the open air, which is the last: symmetric.
 struct Sight {
   struct Edge {
     std::uint32_t other;
     float weight;  ///< area over rays [m2]
-    bool parted;   ///< by glass, a mirror or an opening
+    bool parted;
   };
   std::vector<std::size_t> begin;
   std::vector<Edge> edges;
@@ -50,24 +64,22 @@ bool passes_an_opening(const Problem& problem, std::span<const OpeningSphere> sp
   return false;
 }
 
-Sight look_around(const Problem& problem, std::uint64_t seed, const Monitor& monitor) {
+Views look_around(const Problem& problem, std::span<const std::uint32_t> from, std::size_t rays,
+                  const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  const std::size_t n = patches.patch_count();
-  const auto air = static_cast<std::uint32_t>(n);
-  const std::size_t rays = std::bit_floor(std::clamp(kRays / std::max<std::size_t>(n, 1), kFewestRays, kMostRays));
+  const auto air = static_cast<std::uint32_t>(patches.patch_count());
   const bool has_open_air = problem.lights.sky || !problem.lights.suns.empty();
   std::vector<OpeningSphere> spheres;
   for (const LightArea& opening : problem.lights.sky_openings()) spheres.emplace_back(opening);
-  constexpr std::uint32_t kNothing = 0xffffffff;
-  std::vector<std::uint32_t> seen(n * rays, kNothing);
-  std::vector<char> parted(n * rays);
-  parallel_for(n, 32, [&](std::size_t from, std::size_t to) {
+  Views views{rays, std::vector<Views::Meeting>(from.size() * rays)};
+  parallel_for(from.size(), 32, [&](std::size_t begin, std::size_t end) {
     std::vector<Ray> around(rays);
     std::vector<Hit> hits(rays);
-    for (std::size_t i = from; i < to && !monitor.is_interrupted(); ++i) {
-      const Frame frame(patches.normal[i]);
-      const auto corners = patches.corner_positions(PatchId{i});
-      const std::uint64_t key = stream_key(seed, kRoomRays, i);
+    for (std::size_t i = begin; i < end && !monitor.is_interrupted(); ++i) {
+      const PatchId patch{std::size_t{from[i]}};
+      const Frame frame(patches.normal[patch]);
+      const auto corners = patches.corner_positions(patch);
+      const std::uint64_t key = stream_key(kRoomRays, from[i]);
       for (std::size_t k = 0; k < rays; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), key);
         const Vec3 p = problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n);
@@ -77,41 +89,49 @@ Sight look_around(const Problem& problem, std::uint64_t seed, const Monitor& mon
       for (std::size_t k = 0; k < rays; ++k) {
         const Hit& hit = hits[k];
         if (hit.escaped() ? !has_open_air : !hit.patch.valid()) continue;
-        seen[i * rays + k] = hit.escaped() ? air : hit.patch.value;
-        parted[i * rays + k] =
-            hit.reflected || hit.transmittance != Spectrum(1.0) ||
-            passes_an_opening(problem, spheres, around[k], hit.escaped() ? problem.rays.diameter() : hit.distance);
+        const double distance = hit.escaped() ? problem.rays.diameter() : hit.distance;
+        views.meetings[i * rays + k] = {hit.escaped() ? air : hit.patch.value,
+                                        hit.reflected || hit.transmittance != Spectrum(1.0) ||
+                                            passes_an_opening(problem, spheres, around[k], distance)};
       }
     }
   });
+  return views;
+}
 
+/// place  of each patch, and of the open air behind them, among those that decide; kNone: it does not.
+Sight sight_of(const PatchSet& patches, std::span<const std::uint32_t> deciding, std::span<const std::uint32_t> place,
+               const Views& views) {
   Sight sight;
-  sight.begin.assign(n + 2, 0);
-  for (std::size_t r = 0; r < seen.size(); ++r)
-    if (seen[r] != kNothing) ++sight.begin[r / rays], ++sight.begin[seen[r]];
+  sight.begin.assign(deciding.size() + 2, 0);
+  const auto visit = [&](const auto& found) {
+    for (std::size_t r = 0; r < views.meetings.size(); ++r) {
+      const auto& [what, parted] = views.meetings[r];
+      if (what != kNone && place[what] != kNone) found(static_cast<std::uint32_t>(r / views.rays), place[what], parted);
+    }
+  };
+  visit([&](std::uint32_t a, std::uint32_t b, bool) { ++sight.begin[a], ++sight.begin[b]; });
   std::exclusive_scan(sight.begin.begin(), sight.begin.end(), sight.begin.begin(), std::size_t{0});
   sight.edges.resize(sight.begin.back());
   std::vector<std::size_t> next(sight.begin.begin(), sight.begin.end() - 1);
-  for (std::size_t r = 0; r < seen.size(); ++r) {
-    if (seen[r] == kNothing) continue;
-    const auto i = static_cast<std::uint32_t>(r / rays);
-    const auto weight = static_cast<float>(patches.area[i] / static_cast<double>(rays));
-    sight.edges[next[i]++] = {seen[r], weight, parted[r] != 0};
-    sight.edges[next[seen[r]]++] = {i, weight, parted[r] != 0};
-  }
+  visit([&](std::uint32_t a, std::uint32_t b, bool parted) {
+    const auto weight = static_cast<float>(patches.area[deciding[a]] / static_cast<double>(views.rays));
+    sight.edges[next[a]++] = {b, weight, parted};
+    sight.edges[next[b]++] = {a, weight, parted};
+  });
   return sight;
 }
 
 /// Each takes the label that most of what it sees has.
 std::vector<std::uint32_t> hand_labels_on(const Sight& sight, std::vector<std::uint32_t> label,
-                                          const std::vector<bool>& is_fixed, std::uint64_t seed) {
+                                          const std::vector<bool>& is_fixed) {
   std::vector<std::uint32_t> order(sight.size());
   std::iota(order.begin(), order.end(), 0u);
   std::vector<double> votes(label.empty() ? 0 : *std::ranges::max_element(label) + 1, 0);
   std::vector<std::uint32_t> voted;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     // Another order each time: with one order, a label could run through all that follow each other.
-    RandomStream random(seed, stream_key(kRoomRays, static_cast<std::uint64_t>(sweep)));
+    RandomStream random(kRoomOrder, static_cast<std::uint64_t>(sweep));
     for (std::size_t k = order.size(); k > 1; --k)
       std::swap(order[k - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
     std::size_t changed = 0;
@@ -174,20 +194,20 @@ void join_labels(const Sight& sight, std::vector<std::uint32_t>& label, const st
     std::vector<std::pair<double, std::uint32_t>> by_size;
     for (const auto& [l, sum] : all) by_size.push_back({sum, l});
     std::sort(by_size.begin(), by_size.end());
-    std::map<std::uint32_t, bool> was_joined;
+    std::set<std::uint32_t> were_joined;
     for (const auto& [sum, l] : by_size) {
       const auto found = best.find(l);
-      if (found == best.end() || found->second.weight <= 0 || was_joined[l]) continue;
+      if (found == best.end() || found->second.weight <= 0 || were_joined.contains(l)) continue;
       if (is_named[l]) {  // what a name was given to but a part of takes the name
         const std::uint32_t whole = found->second.other;
-        if (l == air || is_named[whole] || joins.contains(whole) || was_joined[whole]) continue;
+        if (l == air || is_named[whole] || joins.contains(whole) || were_joined.contains(whole)) continue;
         joins[whole] = l;
-        was_joined[l] = true;
+        were_joined.insert(l);
         continue;
       }
       if (joins.contains(found->second.other)) continue;
       joins[l] = found->second.other;
-      was_joined[found->second.other] = true;
+      were_joined.insert(found->second.other);
     }
     if (joins.empty()) return;
     for (std::uint32_t& l : label)
@@ -202,7 +222,6 @@ bool contains(const NamedSpace& space, const Vec3& p) {
 }
 
 /// The named room of each patch, or kNone.
-constexpr std::uint32_t kNone = 0xffffffff;
 std::vector<std::uint32_t> named_room_of(const PatchSet& patches, const NamedRooms& named) {
   std::vector<std::uint32_t> room(patches.patch_count(), kNone);
   std::vector<Box> boxes;
@@ -225,33 +244,35 @@ std::vector<std::uint32_t> named_room_of(const PatchSet& patches, const NamedRoo
   return room;
 }
 
-}  // namespace
-
-Rooms find_rooms(const Problem& problem, const NamedRooms& named, std::uint64_t seed, const Monitor& monitor) {
-  const PatchSet& patches = problem.patches;
-  const std::size_t n = patches.patch_count(), named_count = named.spaces.size() + named.by_surface.size();
-  // Labels: those with names, then the open air, then one for each patch.
-  const auto air = static_cast<std::uint32_t>(named_count);
-  std::vector<std::uint32_t> label = named_room_of(patches, named);
-  std::vector<bool> is_fixed(n + 1), is_named(n + named_count + 1);
-  for (std::size_t i = 0; i < n; ++i) {
-    is_fixed[i] = label[i] != kNone;
-    if (!is_fixed[i]) label[i] = static_cast<std::uint32_t>(named_count + 1 + i);
+/// What most of these meetings have, of those that nothing parts if there are any.
+std::uint32_t seen_most(std::span<const Views::Meeting> meetings, std::span<const std::uint32_t> place,
+                        std::span<const std::uint32_t> label, std::uint32_t none) {
+  std::uint32_t best = none;
+  int most = 0;
+  for (const auto& [what, parted] : meetings) {
+    if (what == kNone || place[what] == kNone) continue;
+    int votes = parted ? 0 : 100;
+    for (const auto& [other, is_parted] : meetings)
+      votes +=
+          other != kNone && place[other] != kNone && is_parted == parted && label[place[other]] == label[place[what]];
+    if (votes > most) best = label[place[what]], most = votes;
   }
-  label.push_back(air);
-  is_fixed[n] = true;
-  for (std::size_t l = 0; l <= named_count; ++l) is_named[l] = true;
-  const Sight sight = look_around(problem, seed, monitor);
-  label = hand_labels_on(sight, std::move(label), is_fixed, seed);
-  join_labels(sight, label, is_named, air);
+  return best;
+}
 
+/// Numbers and names of the rooms.
+///
+/// label  of each patch: a named room, the open air, any room, or `small`, which is the last.
+Rooms numbered(const PatchSet& patches, const NamedRooms& named, std::vector<std::uint32_t> label,
+               const std::vector<bool>& is_named, std::uint32_t air, std::uint32_t small) {
   // The insides of frames and the gaps behind them are told together.
-  const auto small = static_cast<std::uint32_t>(is_named.size());
-  std::vector<double> area(is_named.size() + 1, 0);
+  const std::size_t n = patches.patch_count();
+  std::vector<double> area(small + 1, 0);
   for (std::size_t i = 0; i < n; ++i) area[label[i]] += patches.area[i];
   const double least = kLeastRoom * patches.total_area();
   for (std::size_t i = 0; i < n; ++i)
-    if (!is_named[label[i]] && area[label[i]] < least) area[small] += patches.area[i], label[i] = small;
+    if (label[i] != small && !is_named[label[i]] && area[label[i]] < least)
+      area[small] += patches.area[i], label[i] = small;
   std::vector<std::uint32_t> order;
   std::vector<bool> is_there(area.size());
   for (std::size_t i = 0; i < n; ++i) is_there[label[i]] = true;
@@ -267,12 +288,58 @@ Rooms find_rooms(const Problem& problem, const NamedRooms& named, std::uint64_t 
     rooms.names.push_back(l == air                  ? "outdoors"
                           : l == small              ? "smaller spaces"
                           : l < named.spaces.size() ? named.spaces[l].name
-                          : l < named_count         ? named.by_surface[l - named.spaces.size()].name
+                          : l < air                 ? named.by_surface[l - named.spaces.size()].name
                                                     : "room " + std::to_string(++nameless));
   }
   rooms.of_patch.resize(n);
   for (std::size_t i = 0; i < n; ++i) rooms.of_patch[i] = number[label[i]];
   return rooms;
+}
+
+}  // namespace
+
+Rooms find_rooms(const Problem& problem, const NamedRooms& named, const Monitor& monitor) {
+  const PatchSet& patches = problem.patches;
+  const std::size_t n = patches.patch_count(), named_count = named.spaces.size() + named.by_surface.size();
+  std::vector<std::uint32_t> deciding(n), others;
+  std::iota(deciding.begin(), deciding.end(), 0u);
+  if (n > kDeciding) {
+    std::ranges::stable_sort(deciding, std::greater<>(), [&](std::uint32_t i) { return patches.area[i]; });
+    others.assign(deciding.begin() + kDeciding, deciding.end());
+    deciding.resize(kDeciding);
+  }
+  std::vector<std::uint32_t> place(n + 1, kNone);
+  for (std::uint32_t k = 0; k < deciding.size(); ++k) place[deciding[k]] = k;
+  place[n] = static_cast<std::uint32_t>(deciding.size());
+
+  // Labels: those with names, then the open air, then one for each patch that decides.
+  const auto air = static_cast<std::uint32_t>(named_count);
+  const std::vector<std::uint32_t> name = named_room_of(patches, named);
+  std::vector<std::uint32_t> label;
+  std::vector<bool> is_fixed, is_named(deciding.size() + named_count + 1);
+  for (std::uint32_t k = 0; k < deciding.size(); ++k) {
+    is_fixed.push_back(name[deciding[k]] != kNone);
+    label.push_back(is_fixed[k] ? name[deciding[k]] : air + 1 + k);
+  }
+  label.push_back(air);
+  is_fixed.push_back(true);
+  for (std::size_t l = 0; l <= named_count; ++l) is_named[l] = true;
+  const std::size_t rays =
+      std::bit_floor(std::clamp(kRays / std::max<std::size_t>(deciding.size(), 1), kFewestRays, kMostRays));
+  const Sight sight = sight_of(patches, deciding, place, look_around(problem, deciding, rays, monitor));
+  label = hand_labels_on(sight, std::move(label), is_fixed);
+  join_labels(sight, label, is_named, air);
+
+  const auto small = static_cast<std::uint32_t>(is_named.size());
+  std::vector<std::uint32_t> label_of(n, small);
+  for (std::uint32_t k = 0; k < deciding.size(); ++k) label_of[deciding[k]] = label[k];
+  const Views of_others = look_around(problem, others, kRaysOfOthers, monitor);
+  for (std::size_t k = 0; k < others.size(); ++k)
+    label_of[others[k]] =
+        name[others[k]] != kNone
+            ? name[others[k]]
+            : seen_most(std::span(of_others.meetings).subspan(k * kRaysOfOthers, kRaysOfOthers), place, label, small);
+  return numbered(patches, named, std::move(label_of), is_named, air, small);
 }
 
 }  // namespace clerestory

@@ -67,6 +67,18 @@ double worst_error(const Solved& s) {
   return std::max(of(s.error), of(s.error_sensors));
 }
 
+/// Where a time limit may leave time for a coarser level only.
+bool may_be_too_much(const Settings& s) {
+  return s.time_limit && s.solve.method == Method::hierarchical && s.solve.tighten == 0;
+}
+
+void say_coarser(Solution& solution, Accuracy level, Accuracy asked) {
+  const auto name = [](Accuracy a) { return std::string(kAccuracyNames[static_cast<std::size_t>(a)]); };
+  if (solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
+  if (solution.stopped_at.empty())
+    solution.stopped_at = "accuracy " + name(level) + ", as " + name(asked) + " would have taken longer";
+}
+
 bool is_better(const Solved& a, const Solved& b) { return a.error && (!b.error || worst_error(a) <= worst_error(b)); }
 
 }  // namespace
@@ -89,8 +101,16 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
   StageSeconds seconds;
   Settings settings = asked;
   const auto attempt = [&] {
+    const Accuracy level = settings.solve.accuracy;
+    if (may_be_too_much(settings)) settings.solve.at_most = level, settings.solve.accuracy = Accuracy::draft;
     std::optional<Solved> solved = round(settings, monitor, seconds);
-    if (solved) solved->settings = settings;
+    if (solved && solved->rather) {
+      settings.solve.at_most = settings.solve.accuracy = *solved->rather;
+      solved = round(settings, monitor, seconds);
+    }
+    if (!solved) return solved;
+    solved->settings = settings;
+    if (settings.solve.accuracy < level) say_coarser(solved->solution, settings.solve.accuracy, level);
     return solved;
   };
   Solved best;

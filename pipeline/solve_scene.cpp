@@ -19,6 +19,7 @@
 namespace clerestory {
 namespace {
 
+constexpr double kShareToMeasure = 0.1;  ///< of a time limit
 /// For an error that is stated after the time limit, too.
 constexpr std::chrono::milliseconds kTimeToMeasure{400};
 
@@ -69,6 +70,8 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         Solved out;
         Monitor preparing = monitor;  // late or not, there is nothing to show before the first round
         if (buried) preparing.interrupted = [&] { return monitor.should_stop(); };
+        const bool measures = settings.error_samples.value_or(1) > 0;
+        const Monitor solving = measures ? monitor.earlier(kShareToMeasure * monitor.seconds_left()) : monitor;
         std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, preparing, seconds);
         if (!prepared) return {};
         auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
@@ -81,15 +84,21 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         // -> radiosity of elements, irradiance at vertices.
         Lap lap;
         const SolveOptions& options = settings.solve;
-        SolvedPatches solved = solve(problem, std::move(prepared->lightmap), repairs.max_element, options, monitor,
-                                     settings.debug ? &out.debug : nullptr);
+        const AroundSolve around{sensors.planes, seconds.mesh + seconds.build};
+        SolvedPatches solved = solve(problem, std::move(prepared->lightmap), repairs.max_element, options, solving,
+                                     settings.debug ? &out.debug : nullptr, around);
+        if (solved.rather) {
+          out.rather = solved.rather;
+          lap.add_to(seconds.gather);
+          return out;
+        }
         Solution& solution = solved.solution;
         if (solved.elements.patch_count() > 0) patches = std::move(solved.elements);  // the problem is about these now
         monitor.report(sensors.planes.empty() ? "error" : "sensors", 0);  // ends the last stage of the solve
         lap.add_to(seconds.gather);
 
         // -> irradiance at sensors.
-        const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, monitor);
+        const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, solving);
         if (at_planes.complete()) {
           out.sensor_E = mean_over_planes(sensors, at_planes.E);
           // The planes of one sensor share no path, but what they have in common may be off alike: not divided by root
@@ -97,12 +106,11 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
           if (at_planes.std_error.size() > 0) out.sensor_std_error = mean_over_planes(sensors, at_planes.std_error);
         }
         solution.rays += at_planes.rays;
-        if (monitor.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
+        if (solving.should_stop() && solution.stop == StopReason::converged) solution.stop = StopReason::time_limit;
         lap.add_to(seconds.reconstruct);
 
         // -> how wrong both are, as far as there is time: a little after the limit, too.
-        const bool measures = settings.error_samples.value_or(1) > 0;
-        ErrorEffort spend = effort(options.accuracy, options.tighten).error;
+        ErrorEffort spend = effort(solved.shown, options.tighten).error;
         spend.asked_points = settings.error_samples;
         Monitor measuring = monitor;
         if (monitor.is_late())

@@ -26,10 +26,11 @@ struct Solved {
   std::size_t buried_sensors = 0;                     ///< inside solids: their error is not part of error_sensors
   MeshReport repairs;
   LitSides lit_sides;
-  std::size_t openings = 0;  ///< through which the sky looks in
-  HierarchyDebug debug;      ///< empty unless asked for
-  Settings settings;         ///< as they were in force for this result
-  StageSeconds seconds;      ///< of all rounds
+  std::size_t openings = 0;          ///< through which the sky looks in
+  HierarchyDebug debug;              ///< empty unless asked for
+  Settings settings;                 ///< as they were in force for this result
+  StageSeconds seconds;              ///< of all rounds
+  std::optional<Accuracy> rather{};  ///< there is time for this level instead: nothing else is filled
 
   /// Stopped before there were patches to solve.
   bool empty() const { return patches.patch_count() == 0; }

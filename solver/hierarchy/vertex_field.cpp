@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "solver/gather/gather_point.h"
+#include "solver/gather/gather_time.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
@@ -20,6 +21,9 @@ constexpr double kDark = 0.02;
 /// Share of the difference between corners that may hide a shadow which lies between them.
 constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
+/// Points gathered after halving, as a share of those there were before, that a quality must leave time for.
+constexpr double kPointsOfHalves = 0.5;
+constexpr double kPointsOfHalf = 2;  ///< that halving an element makes at most, as its neighbours are halved with it
 /// Where light that is not straight from sun and luminaires is off by more than so many times the tolerance, edges may
 /// be shorter than the shortest in proportion, down to that share of it: at the feet of furniture and in window
 /// reveals.
@@ -82,13 +86,25 @@ std::vector<std::uint32_t> stand_ins(const ElementMesh& mesh, const std::vector<
   return stand_in;
 }
 
+/// What the deadline leaves time for.
+GatherQuality quality_in_time(const Illumination& light, const ElementMesh& mesh, const FieldOptions& options,
+                              const Monitor& monitor) {
+  if (!monitor.has_deadline()) return options.quality;
+  std::vector<GatherQuality> qualities{options.quality};
+  qualities.insert(qualities.end(), options.coarser.begin(), options.coarser.end());
+  const VertexLightmap& at = mesh.points();
+  const Gathers gathers{std::min(at.sample_position.size(), options.most_points),
+                        sample_points(at, light.problem.rays)};
+  return quality_in_time(light, gathers, qualities, monitor.seconds_left() / (1 + kPointsOfHalves), options.seed);
+}
+
 /// Gathers at points that are new since the last time, in parallel.
 class Gatherer {
  public:
   Gatherer(const Problem& problem, const Field& B, const SlitLight& slit_light, const ElementMesh& mesh,
            const FieldOptions& options, const RowLight* layers, const Monitor& monitor)
       : light_(gather_illumination_by_slits(problem, B, slit_light, options.seed, monitor)),
-        pattern_(options.quality, options.seed),
+        pattern_(quality_in_time(light_, mesh, options, monitor), options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
         layers_(layers),
@@ -97,6 +113,10 @@ class Gatherer {
         plans_(pilots_ ? mesh.points().position.size() : 0) {
     if (pilots_) pilot_of_ = stand_ins(mesh, worth_, options.shortest_edge, kNearby, kSameHorizon);
     same_as_ = stand_ins(mesh, worth_, options.shortest_edge, kSamePlace * options.tolerance, VertexLightmap::kAlike);
+  }
+
+  bool is_coarser_than(const GatherQuality& quality) const {
+    return pattern_.quality().bundle.rays < quality.bundle.rays;
   }
 
   /// False when the monitor stopped it.
@@ -329,12 +349,20 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
   }
   field.E = field.delta_light = Field(0, problem.patches.channels);
   Gatherer gatherer(problem, B, slit_light, mesh, options, layers, monitor);
+  field.in_time = !gatherer.is_coarser_than(options.quality);
+  const double before = monitor.seconds_left();
   for (int round = 0;; ++round) {
     field.complete = gatherer.gather(field, monitor);
-    if (!field.complete || round == kMostRounds || mesh.points().position.size() >= options.most_points) break;
+    const std::size_t points = mesh.points().position.size();
+    if (!field.complete || round == kMostRounds || points >= options.most_points) break;
+    const double left = monitor.seconds_left(), most_in_time = static_cast<double>(points) * left / (before - left);
     std::vector<std::uint32_t> marked;
     for (const Candidate& c : too_coarse(mesh, field, options)) {
-      if (mesh.points().position.size() + marked.size() >= options.most_points) break;
+      if (points + marked.size() >= options.most_points) break;
+      if (monitor.has_deadline() && static_cast<double>(marked.size() + 1) > most_in_time / kPointsOfHalf) {
+        field.in_time = false;
+        break;
+      }
       marked.push_back(c.leaf);
     }
     if (marked.empty()) break;

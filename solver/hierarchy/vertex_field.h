@@ -18,6 +18,8 @@ struct FieldOptions {
   /// caller, who knows what their element receives; else no element is halved beyond.
   std::size_t most_points = 400'000;
   GatherQuality quality;
+  /// Taken instead, the first that fits, where the deadline comes too early for `quality`.
+  std::vector<GatherQuality> coarser{};
   std::uint64_t seed = 1;
 };
 
@@ -32,6 +34,7 @@ struct VertexField {
   std::size_t alike = 0;    ///< points that took the light of another beside them, but for sun and luminaires
   std::vector<bool> known;  ///< P, false: not gathered, E holds nothing
   bool complete = true;     ///< false: the monitor stopped it
+  bool in_time = true;      ///< false: the deadline left time for a coarser quality only, or for fewer halves
 };
 
 /// Final gather at all points of the mesh, then halves elements, gathers the new points, and looks again.
@@ -40,6 +43,9 @@ struct VertexField {
 /// to the other: (g_b - g_a) . (b - a) / 8 is how far the middle lies off the straight line; where corners differ much,
 /// at least a quarter of that, as a shadow may lie between them. What is less than the noise of its corners is taken
 /// for noise. Shadow edges never agree, so there the shortest edge decides.
+///
+/// With a deadline the quality is one by which all points of the lightmap and half as many more seem to be done by
+/// then, and the worst elements are halved first, as many as there seems to be time for.
 ///
 /// problem     with the patches that B belongs to; mesh: halves of theirs, or of what they are halves of.
 /// layers      null, or layers that sum to this light: what each gives, by the same rays at the same points.

@@ -149,7 +149,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     direct.E.set(i, delta.luminaires + sky);
     daylight[i] = luminous_mean(sky) * problem.patches.area[i];
   };
-  if (options.rough_first && monitor.deadline != Monitor{}.deadline) {
+  if (options.rough_first && monitor.has_deadline()) {
     // Time may run out below: no patch shall stay dark for that.
     const DirectOptions rough{
         .shadow_rays = 16, .edge_rays = 16, .sky_rays = std::min(16, options.sky_rays), .seed = options.seed};

@@ -64,8 +64,18 @@ Quality full(const HierarchyOptions& o, std::size_t leaves, bool by_spot = false
           true};
 }
 
+int rays_of(const LinkOptions& links) { return links.bundle_rays + links.bright_rays; }
+
+/// With fewer rays where the deadline would come too early: the last coarse round tells what they take.
+Quality in_time(Quality quality, const Quality& before, double seconds_before, const Monitor& monitor) {
+  const double left = monitor.seconds_left(), a_ray = seconds_before / rays_of(before.links);
+  while (a_ray * rays_of(quality.links) > left && rays_of(quality.links) > 2 * rays_of(before.links))
+    quality.links.bundle_rays /= 2, quality.links.bright_rays /= 2;
+  return quality;
+}
+
 bool merges(std::size_t leaves, const LinkOptions& links) {
-  return static_cast<double>(leaves) * (links.bundle_rays + links.bright_rays) > kLinksToSpare;
+  return static_cast<double>(leaves) * rays_of(links) > kLinksToSpare;
 }
 
 /// What one round hands to the next: the light on the leaves as they were.
@@ -264,22 +274,15 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   return round;
 }
 
-/// Something to show while there is nothing better: shooting, or its ambient term alone.
-HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options,
-                                   bool ambient_only, const Monitor& monitor) {
+/// Something to show where there is nothing better: what comes straight from the lights, and the ambient term.
+HierarchicalSolution ambient_picture(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options) {
   HierarchicalSolution out;
   out.elements = mesh.leaf_patches();
   const Problem problem{out.elements, whole.rays, whole.lights};
-  const Illumination light(problem);
-  const bool late = ambient_only || monitor.should_stop();
   const DirectLight direct = direct_light(
-      light, {.shadow_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed}, monitor);
-  const Closure closure = measure_closure(problem, late ? 8 : 16, options.seed);
-  out.solution = shoot(
-      problem, direct, closure,
-      {.stop_fraction = 0.03, .rays_per_patch = 32, .max_rounds = late ? 0 : 1000, .seed = options.seed}, monitor);
+      Illumination(problem), {.shadow_rays = 16, .edge_rays = 16, .sky_rays = 8, .seed = options.seed}, {});
+  out.solution = shoot(problem, direct, measure_closure(problem, 8, options.seed), {.max_rounds = 0}, {});
   out.solution.method = "hierarchical";
-  out.solution.log.push_back(late ? "the ambient estimate" : "early picture by progressive shooting");
   return out;
 }
 
@@ -287,17 +290,10 @@ HierarchicalSolution early_picture(const Problem& whole, const ElementMesh& mesh
 
 HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, const HierarchyOptions& options,
                                   const Monitor& monitor) {
-  HierarchicalSolution early;
-  const bool hurry = monitor.deadline != Monitor{}.deadline;
   std::vector<std::uint32_t> returned = mesh.leaves();  // the elements of what is returned
-  if (hurry) {
-    early = early_picture(problem, mesh, options, false, monitor);
-    monitor.say_result();
-  }
-
   std::unique_ptr<Round> last;
-  std::vector<std::string> log = early.solution.log;
-  unsigned long long rays = early.solution.rays;
+  std::vector<std::string> log;
+  unsigned long long rays = 0;
   const auto go_on = [&](Round&& round) {
     rays += round.result.solution.rays;
     if (!round.complete) return false;
@@ -308,12 +304,15 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   };
 
   bool going = !monitor.should_stop();
+  double seconds = 0;  // of the last coarse round
   for (int number = 0; going && number < kMostRounds; ++number) {
     monitor.report("refine", static_cast<double>(number) / kMostRounds);
     std::size_t before = mesh.leaf_count();
     const std::string name = "round " + std::to_string(number);
+    const double left = monitor.seconds_left();
     going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), monitor));
     if (!going) break;
+    if (monitor.has_deadline()) seconds = left - monitor.seconds_left();
     if (options.oracle == Oracle::bf) {
       // Each round refines by the light that the last one found.
       if (mesh.leaf_count() + 4 * last->to_halve.size() <= options.most_elements) mesh.split(last->to_halve);
@@ -341,8 +340,8 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
   }
   if (going) {
     const bool by_spot = last && is_lit_by_spot(last->result, problem.lights);
-    going = go_on(solve_round(problem, mesh, options, full(options, mesh.leaf_count(), by_spot), "last round",
-                              last.get(), monitor, options.keep));
+    const Quality quality = in_time(full(options, mesh.leaf_count(), by_spot), coarse(options), seconds, monitor);
+    going = go_on(solve_round(problem, mesh, options, quality, "last round", last.get(), monitor, options.keep));
   }
 
   HierarchicalSolution out;
@@ -350,8 +349,9 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     out = std::move(last->result);
     returned = std::move(last->element);
   } else {
-    out = hurry ? std::move(early) : early_picture(problem, mesh, options, true, {});
-    if (!hurry) log.push_back(out.solution.log.back());
+    out = ambient_picture(problem, mesh, options);
+    rays += out.solution.rays;
+    log.push_back("the ambient estimate");
   }
   if (!going) {
     out.solution.stop = why_stopped(monitor);

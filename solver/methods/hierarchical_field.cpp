@@ -10,6 +10,7 @@
 #include "solver/illumination/near_luminaires.h"
 #include "solver/methods/near_points.h"
 #include "solver/model/units.h"
+#include "solver/paths/find_slit_gains.h"
 
 namespace clerestory {
 namespace {
@@ -257,6 +258,25 @@ void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<
   out.values = {{"interpolation_error", interpolation}, {"std_error", std_error}, {"level", halvings}};
 }
 
+constexpr double kShareOfField = 0.1;    ///< of the time that is left, after the elements at least
+constexpr double kSecondsOfField = 0.5;  ///< that vertices get at least, late or not: means of elements show far less
+
+/// Share of the time that is left for the gathers of the caller, as what they and the vertices ask for.
+double share_for_later(const Problem& problem, const Solution& coarse, const ElementMesh& mesh,
+                       const HierarchicalFieldOptions& options) {
+  if (options.later.count == 0) return 0;
+  const std::uint64_t seed = options.elements.seed;
+  const Illumination light = gather_illumination_by_slits(problem, coarse.B, coarse.slit_light, seed);
+  const VertexLightmap& at = mesh.points();
+  const auto seconds = [&](const Gathers& gathers) {
+    return static_cast<double>(gathers.count) * seconds_a_gather(light, gathers, seed);
+  };
+  const double of_later = seconds(options.later);
+  const double of_vertices =
+      seconds({at.sample_position.size(), sample_points(at, problem.rays), options.vertices.quality});
+  return of_later / std::max(of_later + of_vertices, 1e-9);
+}
+
 }  // namespace
 
 HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
@@ -265,7 +285,15 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   HierarchyOptions of_elements = options.elements;
   KeptTransport kept;
   if (!options.layers.empty() && !of_elements.keep) of_elements.keep = &kept;
-  HierarchicalSolution coarse = hierarchical(problem, mesh, of_elements, monitor);
+  HierarchicalSolution coarse =
+      hierarchical(problem, mesh, of_elements, monitor.earlier(kShareOfField * monitor.seconds_left()));
+  const Problem transport{coarse.elements, problem.rays, problem.lights};
+  FieldOptions vertices = options.vertices;
+  if (options.goes_on) {
+    const std::optional<FieldOptions> how = options.goes_on(transport, coarse.solution, mesh.points());
+    if (!how) return {{}, {}, {}, {}, false};
+    vertices = *how;
+  }
   const std::vector<std::uint32_t> transport_leaves = mesh.leaves();
   Balanced layers;
   TransportLayers transport_layers{transport_leaves, {}, {}};
@@ -277,8 +305,10 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
     of_layers.emplace(options.layers, problem.patches.channels, layers.B);
     kept = {};
   }
-  const Problem transport{coarse.elements, problem.rays, problem.lights};
-  VertexField field = gather_field(transport, coarse.solution.B, mesh, options.vertices, monitor,
+  const double share_of_later = monitor.has_deadline() ? share_for_later(transport, coarse.solution, mesh, options) : 0;
+  const double left = monitor.seconds_left();
+  VertexField field = gather_field(transport, coarse.solution.B, mesh, vertices,
+                                   monitor.earlier(std::min(share_of_later * left, left - kSecondsOfField)),
                                    of_layers ? &*of_layers : nullptr, coarse.solution.slit_light);
   if (options.elements.debug) view_errors(mesh, field, options.elements.debug->error);
 
@@ -288,7 +318,8 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
                          std::to_string(mesh.leaf_count()) + " shown on " +
                          std::to_string(mesh.points().position.size()) + " points, " + std::to_string(field.alike) +
                          " of them as bright as one beside them");
-  if (!field.complete && solution.stop == StopReason::converged) solution.stop = why_stopped(monitor);
+  if (!(field.complete && field.in_time) && solution.stop == StopReason::converged)
+    solution.stop = why_stopped(monitor);
   const NearLuminaires near = near_luminaires(mesh, transport_leaves, coarse, field, problem.lights);
   correct_flux(coarse, transport_leaves, solution.E, mesh, !near.among_leaves.empty(), field);
   fill_unknown(mesh, transport_leaves, coarse.elements, solution.E, field);

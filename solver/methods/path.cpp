@@ -25,7 +25,7 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
   int done = 0;
   constexpr std::size_t kBlock = 1 << 12;
   Monitor patient = monitor;  // the first round gets a little more time: every patch needs a value
-  if (monitor.deadline != Monitor{}.deadline) patient.deadline += std::chrono::seconds(1);
+  if (monitor.has_deadline()) patient.deadline += std::chrono::seconds(1);
   for (; done < options.paths && solution.stop == StopReason::converged; done += kRound) {
     const Monitor& asked = done == 0 ? patient : monitor;
     for (std::size_t begin = 0; begin < n; begin += kBlock) {

@@ -1,8 +1,10 @@
 #pragma once
 // How a long computation reports progress and learns that it should stop.
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <string_view>
 
 namespace clerestory {
@@ -24,6 +26,20 @@ struct Monitor {
     if (has_result) has_result();
   }
   bool is_interrupted() const { return interrupted && interrupted(); }
+  bool has_deadline() const { return deadline != std::chrono::steady_clock::time_point::max(); }
+  /// [s], 0 afterwards; infinite without one.
+  double seconds_left() const {
+    if (!has_deadline()) return std::numeric_limits<double>::infinity();
+    return std::max(0.0, std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count());
+  }
+  /// With a deadline that is so many seconds before, where there is one.
+  Monitor earlier(double seconds) const {
+    Monitor m = *this;
+    if (has_deadline())
+      m.deadline -=
+          std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+    return m;
+  }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline; }
   bool should_stop() const { return is_interrupted() || is_late(); }
 };

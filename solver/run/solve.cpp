@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solver/gather/gather.h"
+#include "solver/gather/gather_time.h"
 #include "solver/illumination/direct.h"
 #include "solver/illumination/near_luminaires.h"
 #include "solver/methods/form_factor_matrix.h"
@@ -24,6 +25,7 @@
 #include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
+#include "solver/run/level_in_time.h"
 #include "solver/run/memory_estimate.h"
 #include "solver/run/sound_result.h"
 #include "solver/spaces/closure.h"
@@ -79,28 +81,62 @@ ShortestEdge shortest_edges(const PatchSet& patches, double longest_edge, const 
   return edges;
 }
 
+/// Qualities of the levels below, the finest first.
+std::vector<GatherQuality> coarser_than(const SolveOptions& options, GatherQuality Effort::*quality) {
+  std::vector<GatherQuality> coarser;
+  if (options.accuracy == Accuracy::fine) coarser.push_back(effort(Accuracy::standard, options.tighten).*quality);
+  if (options.accuracy != Accuracy::draft) coarser.push_back(effort(Accuracy::draft, options.tighten).*quality);
+  return coarser;
+}
+
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
-                                 const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
+                                 const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug,
+                                 const AroundSolve& around) {
   require_possible(problem, options);
   const Effort e = effort_of(options);
   const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeastPlan);
-  const ShortestEdge shortest_edge = shortest_edges(problem.patches, longest_edge, e, options.tighten);
-  HierarchicalField field = hierarchical_field(problem, std::move(map),
-                                               {.elements = {.oracle = options.oracle,
-                                                             .bundle_rays = plan.bundle_rays,
-                                                             .bright_rays = plan.bright_rays,
-                                                             .tolerance = e.element_tolerance,
-                                                             .shortest_edge = shortest_edge,
-                                                             .most_elements = plan.most_elements,
-                                                             .seed = options.seed,
-                                                             .debug = debug},
-                                                .vertices = {.tolerance = e.vertex_tolerance,
-                                                             .shortest_edge = shortest_edge,
-                                                             .most_points = plan.most_points,
-                                                             .quality = e.vertices,
-                                                             .seed = options.seed}},
-                                               monitor);
-  return {std::move(field.elements), std::move(field.lightmap), std::move(field.solution)};
+  const auto vertices_of = [&](const SolveOptions& level) {
+    const Effort of_level = effort_of(level);
+    return FieldOptions{.tolerance = of_level.vertex_tolerance,
+                        .shortest_edge = shortest_edges(problem.patches, longest_edge, of_level, options.tighten),
+                        .most_points = plan.most_points,
+                        .quality = of_level.vertices,
+                        .coarser = coarser_than(level, &Effort::vertices),
+                        .seed = options.seed};
+  };
+  const FieldOptions vertices = vertices_of(options);
+  const Gathers sensors{around.sensors.size(), sensor_points(around.sensors, problem.patches.origin, problem.rays),
+                        e.sensors};
+  Accuracy rather = options.accuracy, shown = options.accuracy;
+  const double left_at_start = monitor.seconds_left();
+  const auto goes_on = [&](const Problem& elements, const Solution& solution,
+                           const VertexLightmap& points) -> std::optional<FieldOptions> {
+    const bool hurries = monitor.has_deadline() && options.accuracy == Accuracy::draft;
+    if (!hurries || options.at_most == Accuracy::draft) return vertices;
+    const double left = monitor.seconds_left(), took = around.seconds_before + left_at_start - left;
+    const LevelsInTime levels =
+        levels_in_time({elements, solution, points, sensors, took, left, options.at_most, options.seed});
+    rather = levels.from_the_start;
+    if (rather > options.accuracy) return {};
+    SolveOptions level = options;
+    level.accuracy = shown = levels.from_here;
+    return vertices_of(level);
+  };
+  HierarchicalFieldOptions how;
+  how.vertices = vertices;
+  how.later = sensors;
+  how.goes_on = goes_on;
+  how.elements.oracle = options.oracle;
+  how.elements.bundle_rays = plan.bundle_rays;
+  how.elements.bright_rays = plan.bright_rays;
+  how.elements.tolerance = e.element_tolerance;
+  how.elements.shortest_edge = vertices.shortest_edge;
+  how.elements.most_elements = plan.most_elements;
+  how.elements.seed = options.seed;
+  how.elements.debug = debug;
+  HierarchicalField field = hierarchical_field(problem, std::move(map), how, monitor);
+  if (!field.went_on) return {{}, {}, {}, shown, rather};
+  return {std::move(field.elements), std::move(field.lightmap), std::move(field.solution), shown};
 }
 
 /// The matrix methods know light as it arrives; a luminaire's flux that misses the patches belongs to the balance too.
@@ -182,8 +218,9 @@ namespace {
 
 SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, const SolveOptions& options,
                                     const Monitor& monitor) {
-  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor)};
-  auto& [elements, lightmap, solution] = solved;
+  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor), options.accuracy};
+  VertexLightmap& lightmap = solved.lightmap;
+  Solution& solution = solved.solution;
   average_to_points(problem.patches, solution.E, lightmap);
   const Effort e = effort_of(options);
   if (!e.gathers_vertices || monitor.should_stop()) return solved;
@@ -200,10 +237,11 @@ SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, 
 }  // namespace
 
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor, HierarchyDebug* debug) {
-  SolvedPatches solved = options.method == Method::hierarchical
-                             ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug)
-                             : solve_by_other_method(problem, std::move(map), options, monitor);
+                    const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around) {
+  SolvedPatches solved =
+      options.method == Method::hierarchical
+          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug, around)
+          : solve_by_other_method(problem, std::move(map), options, monitor);
   require_sound(solved.solution.E, "irradiance of the elements");
   require_sound(solved.solution.B, "radiosity of the elements");
   require_sound(solved.lightmap.E, "irradiance at the points");
@@ -215,7 +253,17 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
                                       const Monitor& monitor) {
   const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
   const Effort e = effort_of(options);
-  PointIrradiance at_points = irradiance_at(problem, solution, points.size(), point_of, e.sensors, e.paths_of_sensor,
+  GatherQuality quality = e.sensors;
+  if (monitor.has_deadline() && options.method != Method::path && !points.empty()) {
+    SolveOptions level = options;
+    level.accuracy = std::max(options.accuracy, options.at_most);
+    std::vector<GatherQuality> qualities{effort_of(level).sensors};
+    for (const GatherQuality& coarser : coarser_than(level, &Effort::sensors)) qualities.push_back(coarser);
+    const Illumination light =
+        gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor);
+    quality = quality_in_time(light, {points.size(), point_of}, qualities, monitor.seconds_left(), options.seed);
+  }
+  PointIrradiance at_points = irradiance_at(problem, solution, points.size(), point_of, quality, e.paths_of_sensor,
                                             kPathsOfSensor, "sensors", options, monitor);
   if (!at_points.complete()) {
     // Paths have no bound on their length; looking at the elements has one, and serves any method when time is up.

@@ -2,6 +2,7 @@
 // Problem -> solved patches, irradiance at sensors and measured errors, by the method and accuracy asked for.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "solver/illumination/problem.h"
@@ -18,6 +19,9 @@ namespace clerestory {
 struct SolveOptions {
   Method method = Method::hierarchical;
   Accuracy accuracy = Accuracy::standard;
+  /// With a deadline a draft by the hierarchical method ends with its elements where they tell that the time is enough
+  /// for a finer level, up to this, from the start: SolvedPatches::rather.
+  Accuracy at_most = Accuracy::draft;
   Oracle oracle = Oracle::error;  ///< of the hierarchical method
   std::uint64_t seed = 1;
   std::size_t memory_limit = 0;  ///< the peak of the process stays below by making the result coarser [bytes]; 0: none
@@ -34,6 +38,15 @@ struct SolvedPatches {
   PatchSet elements;        ///< leaf elements, each on a triangle of its own; empty: they are the problem's patches
   VertexLightmap lightmap;  ///< of the elements, E filled
   Solution solution;        ///< of the elements
+  Accuracy shown =
+      Accuracy::draft;  ///< level of the gathers at vertices: with a deadline finer than the elements', perhaps
+  std::optional<Accuracy> rather{};  ///< SolveOptions::at_most; if so, all else is empty
+};
+
+/// What a solve with a deadline must know of what comes before and after it.
+struct AroundSolve {
+  std::span<const SensorPoint> sensors{};  ///< of irradiance_at_sensors(), by the same deadline
+  double seconds_before = 0;               ///< to prepare the patches
 };
 
 /// Solves by the method asked for, and shows the result at vertices.
@@ -43,11 +56,12 @@ struct SolvedPatches {
 /// debug         filled by the hierarchical method where it is asked for; nothing is computed for it otherwise.
 /// throws        InputError when the method needs more memory than there is, or cannot do what the scene has;
 ///               std::logic_error when a value comes out negative or as no number: nobody shall see it.
+/// around        looked at where there is a deadline.
 /// Stops early when the monitor says so, and returns what is solved so far, marked in Solution::stop; vertices that
-/// were not reached then show the mean of their elements.
-/// Threads: same bits for any thread count.
+/// were not reached then show the mean of their elements. With a deadline fewer rays are sent rather than that; where
+/// that was so, Solution::stop tells. Threads: same bits for any thread count.
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor = {}, HierarchyDebug* debug = nullptr);
+                    const Monitor& monitor = {}, HierarchyDebug* debug = nullptr, const AroundSolve& around = {});
 
 /// The first half of that for any method but the hierarchical one, which makes elements of its own: radiosity and
 /// irradiance of every patch.

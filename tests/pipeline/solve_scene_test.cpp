@@ -101,6 +101,30 @@ TEST(SolveScene, SettingsMayBeUsedTwiceWithATimeLimit) {
   EXPECT_EQ(solve_scene(glowing_box(), settings).solution.stop, StopReason::time_limit);
 }
 
+TEST(SolveScene, WithTimeEnoughGivesWhatItGivesWithoutALimit) {
+  // By way of a draft, whose elements tell that there is time.
+  for (const Accuracy level : {Accuracy::draft, Accuracy::standard}) {
+    Settings settings{.solve = {.accuracy = level}};
+    const Solved free = solve_scene(glowing_box(), settings);
+    settings.time_limit = 3600;
+    const Solved limited = solve_scene(glowing_box(), settings);
+    EXPECT_EQ(limited.solution.stop, StopReason::converged);
+    EXPECT_EQ(limited.settings.solve.accuracy, level);
+    EXPECT_EQ(limited.lightmap.E.value, free.lightmap.E.value);
+    EXPECT_EQ(limited.solution.E.value, free.solution.E.value);
+    EXPECT_EQ(limited.sensor_E.value, free.sensor_E.value);
+  }
+}
+
+TEST(SolveScene, WhoseTimeIsOverShowsVerticesAllTheSame) {
+  Settings settings{.time_limit = 1, .start = std::chrono::steady_clock::now() - std::chrono::hours(1)};
+  const Solved late = solve_scene(glowing_box(), settings);
+  EXPECT_EQ(late.solution.stop, StopReason::time_limit);
+  EXPECT_EQ(late.settings.solve.accuracy, Accuracy::draft);
+  EXPECT_EQ(late.solution.stopped_at, "accuracy draft, as standard would have taken longer");
+  for (const double E : late.lightmap.E.value) EXPECT_NEAR(E, 20, 0.5);
+}
+
 /// Stops at once, and counts what it is told.
 class Impatient : public Observer {
  public:

@@ -4,9 +4,11 @@
 
 #include "solver/evaluate/measured_error.h"
 #include "solver/gather/gather_point.h"
+#include "solver/gather/gather_time.h"
 #include "solver/model/random_stream.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
+#include "solver/run/level_in_time.h"
 #include "tests/support/gather_quality.h"
 #include "tests/support/room_with_blocks.h"
 
@@ -93,6 +95,38 @@ TEST(MeasuredError, IsNothingForAnExactFieldAndFindsAFieldThatIsFivePerCentTooBr
     EXPECT_NEAR(error.rms_relative, factor - 1, std::max(error.confidence, 0.005)) << factor;
     EXPECT_LT(error.confidence, 0.02);
   }
+}
+
+TEST(QualityInTime, IsTheFirstThatTimeIsEnoughForOrTheLast) {
+  const Furnace furnace;
+  const Field B(furnace.patches.patch_count(), 1);
+  const Illumination light = gather_illumination(furnace.problem, B);
+  const auto floor = [](std::size_t) { return ReceivingPoint{{0.5, 0.5, 1e-6}, {0, 0, 1}}; };
+  const std::vector<GatherQuality> qualities{effort(Accuracy::standard).vertices, effort(Accuracy::draft).vertices};
+  const auto rays_in = [&](double seconds) {
+    return quality_in_time(light, {1000, floor}, qualities, seconds, 1).bundle.rays;
+  };
+  EXPECT_EQ(rays_in(1e6), qualities[0].bundle.rays);
+  EXPECT_EQ(rays_in(0), qualities[1].bundle.rays);
+  EXPECT_GT(seconds_a_gather(light, {1000, floor, qualities[0]}, 1), 0);
+  EXPECT_EQ(seconds_a_gather(light, {0, floor, qualities[0]}, 1), 0);
+}
+
+TEST(LevelsInTime, AreTheFinestThatTimeIsEnoughFor) {
+  const Furnace furnace;
+  Solution solution;
+  solution.B = Field(furnace.patches.patch_count(), 1);
+  VertexLightmap points;
+  points.sample_position = {{0.5, 0.5, 0}}, points.sample_normal = {{0, 0, 1}};
+  const auto levels = [&](double left, Accuracy at_most) {
+    return levels_in_time({furnace.problem, solution, points, {}, 10, left, at_most, 1});
+  };
+  EXPECT_EQ(levels(1e6, Accuracy::fine).from_the_start, Accuracy::fine);
+  EXPECT_EQ(levels(1e6, Accuracy::standard).from_the_start, Accuracy::standard);
+  // A draft's elements took ten seconds: a standard's take more than those that are left, one point's gather does not.
+  EXPECT_EQ(levels(10, Accuracy::standard).from_the_start, Accuracy::draft);
+  EXPECT_EQ(levels(10, Accuracy::standard).from_here, Accuracy::standard);
+  EXPECT_EQ(levels(0, Accuracy::fine).from_here, Accuracy::draft);
 }
 
 }  // namespace

@@ -33,7 +33,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kWork = ".sweep-";
 constexpr double kNearer = 1.0 / 3;  ///< the reference's own error, as a share of each row's
-constexpr double kNextLevel = 2;     ///< a finer level takes so much longer at least
+constexpr double kFirstPart = 0.25;  ///< of its time, after which it is known how sharp paths will be
+/// Paths that end blunter than this in some room get gathers beside them; these are from a radiosity that has some
+/// tenths of a per cent of error of its own, so not before.
+constexpr double kBlunt = 0.01;
+constexpr double kNextLevel = 2;  ///< a finer level takes so much longer at least
 constexpr std::uintmax_t kMostReport = 1 << 30;
 
 int lock_of(const fs::path& folder) {
@@ -138,7 +142,7 @@ WorkFolder::~WorkFolder() {
 }
 
 Sweep run_all(const std::string& input, const ReadOptions& read, const CommonArguments& common,
-              const PathReference& reference, const WorkFolder& folder, Clock::time_point end, Console& console) {
+              const SweepReference& reference, const WorkFolder& folder, Clock::time_point end, Console& console) {
   Sweep sweep;
   const std::vector<Run> runs = runs_of(input, read, common, folder.path());
   std::map<std::string, double> took_before;  // by method, at the level before; infinite: there was no time for it
@@ -195,31 +199,50 @@ Sweep run_all(const std::string& input, const ReadOptions& read, const CommonArg
   return sweep;
 }
 
-double sharpen(PathReference& reference, const Sweep& sweep, Clock::time_point end, Console& console) {
+double sharpen(SweepReference& reference, const Sweep& sweep, Clock::time_point end, Console& console) {
   const auto start = Clock::now();
+  const double time = left_until(end);
+  const Monitor monitor{.progress = {}, .interrupted = [&] { return console.should_stop(); }, .deadline = end};
   const auto is_sharp = [&] {
     return std::ranges::all_of(sweep.runs, [&](const SweptRun& run) {
       const FieldError error = error_of(reference, run.E);
       return !error.worst.bound && reference.std_error_of(error.room) <= kNearer * error.worst.rms_relative;
     });
   };
-  const Monitor monitor{.progress = {}, .interrupted = [&] { return console.should_stop(); }, .deadline = end};
-  const double time = left_until(end);
+  const auto is_blunt = [&] {
+    return std::ranges::any_of(sweep.runs, [&](const SweptRun& run) {
+      return reference.std_error_of(error_of(reference, run.E).room) > kBlunt * std::sqrt(1 / kFirstPart);
+    });
+  };
   double per_path = 0;  // [s]
-  while (!console.should_stop() && !is_sharp()) {
-    constexpr double kMostPaths = 1 << 22;  // a round, for counts in 32 bits
-    double paths = std::min(kMostPaths, static_cast<double>(reference.paths()));
-    if (per_path > 0) paths = std::min(paths, 0.95 * left_until(end) / per_path);
-    if (paths < 64) break;
-    console.progress("reference", 1 - left_until(end) / time);
-    const auto before = Clock::now();
-    if (!reference.add_paths(static_cast<int>(paths), monitor)) break;
-    per_path = std::chrono::duration<double>(Clock::now() - before).count() / paths;
+  const auto add_paths = [&](double seconds_left) {
+    while (!console.should_stop() && !is_sharp()) {
+      constexpr double kMostPaths = 1 << 22;  // a round, for counts in 32 bits
+      double paths = std::min(kMostPaths, static_cast<double>(reference.paths()));
+      const double left = left_until(end) - seconds_left;
+      if (per_path > 0) paths = std::min(paths, 0.95 * left / per_path);
+      if (paths < 64 || left <= 0) return;
+      console.progress("reference", 1 - left_until(end) / time);
+      const auto before = Clock::now();
+      if (!reference.add_paths(static_cast<int>(paths), monitor)) return;
+      per_path = std::chrono::duration<double>(Clock::now() - before).count() / paths;
+    }
+  };
+  add_paths((1 - kFirstPart) * time);
+  if (!console.should_stop() && !is_sharp() && is_blunt()) {
+    console.progress("gathers of the reference", 0);
+    // At standard where a run at standard says that there is time.
+    const auto fits = [&](const SweptRun& run) {
+      return run.row.method == kMethodNames[0] && run.row.settings.ends_with("standard") &&
+             kNextLevel * run.row.wall_s < left_until(end);
+    };
+    reference.add_gathers(std::ranges::any_of(sweep.runs, fits) ? Accuracy::standard : Accuracy::draft, monitor);
   }
+  add_paths(0);
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Tradeoff judge(const Sweep& sweep, const PathReference& reference) {
+Tradeoff judge(const Sweep& sweep, const SweepReference& reference) {
   const auto figures = [](const ErrorFigures& e) {
     return Tradeoff::Error{e.rms_relative,  e.median_relative, e.p95_relative, e.p99_relative,
                            e.bias_relative, e.confidence,      e.bound};
@@ -235,6 +258,7 @@ Tradeoff judge(const Sweep& sweep, const PathReference& reference) {
   }
   t.reference.points = reference.points().size();
   t.reference.paths = reference.paths();
+  t.reference.has_gathers = reference.has_gathers();
   choose(t);
   return t;
 }

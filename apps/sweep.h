@@ -9,7 +9,7 @@
 #include "apps/arguments.h"
 #include "apps/console.h"
 #include "io/read_scene.h"
-#include "pipeline/tradeoff/path_reference.h"
+#include "pipeline/tradeoff/sweep_reference.h"
 #include "pipeline/tradeoff/tradeoff.h"
 
 namespace clerestory {
@@ -42,14 +42,15 @@ struct Sweep {
 /// `clerestory solve` by every method at every accuracy, as far as `end` and the console let it; a run that is refused,
 /// fails or finds no time is left out.
 Sweep run_all(const std::string& input, const ReadOptions& read, const CommonArguments& common,
-              const PathReference& reference, const WorkFolder& folder, std::chrono::steady_clock::time_point end,
+              const SweepReference& reference, const WorkFolder& folder, std::chrono::steady_clock::time_point end,
               Console& console);
 
-/// Traces paths until the reference's own error is a third of every row's, or `end`. returns  the seconds it took.
-double sharpen(PathReference& reference, const Sweep& sweep, std::chrono::steady_clock::time_point end,
+/// Traces paths until the reference's own error is a third of every row's, or `end`. Where these would stay above 1 %
+/// of a room's mean, it gathers, too. returns  the seconds it took.
+double sharpen(SweepReference& reference, const Sweep& sweep, std::chrono::steady_clock::time_point end,
                Console& console);
 
 /// All but input, version and the time that the reference took.
-Tradeoff judge(const Sweep& sweep, const PathReference& reference);
+Tradeoff judge(const Sweep& sweep, const SweepReference& reference);
 
 }  // namespace clerestory

@@ -104,7 +104,7 @@ ExitCode tradeoff_command(const Arguments& arguments, Console& console) {
 
   const double limit = arguments.time_limit.value_or(kUsualLimit);
   const std::uint64_t seed = arguments.common.seed.value_or(settings_of(scene).solve.seed);
-  PathReference reference(scene, seed, console);
+  SweepReference reference(scene, seed, console);
   reference.add_paths(kFirstPaths, console.monitor());
   make_folder(folder);
   console.has_result();  // from here on a signal must end the runs, too

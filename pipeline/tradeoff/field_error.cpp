@@ -71,12 +71,18 @@ FieldValues values_at(const std::vector<ReferencePoint>& points, const WrittenRe
   return found;
 }
 
-FieldError error_of(const PathReference& reference, const std::vector<double>& E) {
+FieldError error_of(const SweepReference& reference, const std::vector<double>& E) {
   std::vector<Comparison> all;
   std::vector<std::vector<Comparison>> of_room(reference.rooms().size());
   for (std::size_t i = 0; i < E.size(); ++i) {
     const ReferencePoint& at = reference.points()[i];
-    all.push_back({.x = E[i], .r = at.E, .std_error = at.std_error, .weight = at.weight, .part = at.room});
+    all.push_back({.x = E[i],
+                   .r = at.E,
+                   .std_error = at.std_error,
+                   .weight = at.weight,
+                   .part = at.room,
+                   .gather = at.gather,
+                   .other_gather = at.other_gather});
     of_room[at.room].push_back(all.back());
   }
   FieldError error{summarise(all), {}, 0};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/read_result.h"
-#include "pipeline/tradeoff/path_reference.h"
+#include "pipeline/tradeoff/sweep_reference.h"
 #include "solver/evaluate/error_figures.h"
 
 namespace clerestory {
@@ -29,6 +29,6 @@ struct FieldError {
 };
 
 /// E against the reference as it is now.
-FieldError error_of(const PathReference& reference, const std::vector<double>& E);
+FieldError error_of(const SweepReference& reference, const std::vector<double>& E);
 
 }  // namespace clerestory

@@ -43,16 +43,16 @@ std::vector<std::string> choices_as_text(const Tradeoff& t) {
     }
     const Tradeoff::Row& row = t.rows[*choice.row];
     lines.push_back(target + ": " + name_of(row) + ", " + duration(row.wall_s) + ", " + bytes(row.peak_bytes) +
-                    ", rms " + share_text(row.worst.rms, row.worst.bound));
+                    ", rms " + share_text(row.worst.rms, row.worst.bound) + ", p95 " + share_text(row.worst.p95));
   }
   return lines;
 }
 
 std::string reference_as_text(const Tradeoff& t) {
   const Tradeoff::Reference& r = t.reference;
-  return "reference: " + grouped(static_cast<unsigned long long>(r.paths)) + " paths from each of " +
-         counted(r.points, "point") + ", " + duration(r.seconds) + ", its own standard error at a point " +
-         share_text(r.std_error) + " of the room's mean";
+  return "reference: " + grouped(static_cast<unsigned long long>(r.paths)) + " paths " +
+         (r.has_gathers ? "and two gathers " : "") + "from each of " + counted(r.points, "point") + ", " +
+         duration(r.seconds) + ", its own standard error at a point " + share_text(r.std_error) + " of the room's mean";
 }
 
 std::string tradeoff_csv(const Tradeoff& t) {

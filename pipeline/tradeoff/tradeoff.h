@@ -43,7 +43,8 @@ struct Tradeoff {
   std::vector<Choice> choices;
   struct Reference {
     std::size_t points = 0;
-    long long paths = 0;   ///< from each point
+    long long paths = 0;       ///< from each point
+    bool has_gathers = false;  ///< and two gathers from each, of which paths tell the level
     double std_error = 0;  ///< root mean square of the points' own, of the mean, in the worst of the rows' rooms [1]
     double seconds = 0;
   } reference;

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "solver/evaluate/points_by_room.h"
+#include "solver/evaluate/two_gathers.h"
 #include "solver/gather/gather.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
-#include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
 
@@ -69,28 +69,6 @@ struct References {
   bool complete = false;
 };
 
-/// Sets both gathers of all comparisons, or none of them when the monitor stops it.
-void add_gathers(const Problem& problem, const Solution& solution, const PointOf& point_of,
-                 const GatherQuality& quality, std::uint64_t key, const Monitor& monitor,
-                 std::vector<Comparison>& comparisons) {
-  const Illumination light = gather_illumination_by_slits(problem, solution.B, solution.slit_light, key, monitor);
-  // The points of one pattern share its strata, so what one of them makes of chance the next one does, too: several.
-  constexpr std::size_t kPatterns = 8;
-  std::vector<std::array<double, 2>> found(comparisons.size());
-  for (std::size_t p = 0; p < kPatterns; ++p) {
-    const std::size_t count = (comparisons.size() + kPatterns - 1 - p) / kPatterns;
-    for (std::size_t which = 0; which < 2; ++which) {
-      const GatherPattern pattern(quality, stream_key(key, kErrorGathers, 2 * p + which));
-      const PointIrradiance at = gather_at(
-          light, count, [&](std::size_t k) { return point_of(p + k * kPatterns); }, pattern, "error", monitor);
-      if (!at.complete()) return;
-      for (std::size_t k = 0; k < count; ++k) found[p + k * kPatterns][which] = luminous_mean(at.E[k]);
-    }
-  }
-  for (std::size_t k = 0; k < found.size(); ++k)
-    comparisons[k].gather = found[k][0], comparisons[k].other_gather = found[k][1];
-}
-
 /// Traces paths for references at the places of samples whose x is set, as many as the effort allows. Stopped by the
 /// monitor, it takes those that are there.
 ///
@@ -143,9 +121,12 @@ std::vector<Comparison> compare(const Problem& problem, const std::vector<Compar
   const auto number_of = [&](std::size_t k) { return k * samples.size() / count; };
   References all = trace(count, key, paths, number_of);
   if (all.at.size() < pilot.at.size()) return pilot.at;
-  if (all.complete && solution.std_error.value.empty())
-    add_gathers(
-        problem, solution, [&](std::size_t k) { return point_of(number_of(k)); }, effort.gather, key, monitor, all.at);
+  if (all.complete && solution.std_error.value.empty()) {
+    const auto found = two_gathers(
+        problem, solution, all.at.size(), [&](std::size_t k) { return point_of(number_of(k)); }, effort.gather, key,
+        monitor);
+    for (std::size_t k = 0; k < found.size(); ++k) all.at[k].gather = found[k][0], all.at[k].other_gather = found[k][1];
+  }
   return all.at;
 }
 

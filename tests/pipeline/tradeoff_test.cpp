@@ -12,7 +12,7 @@
 
 #include "io/read_scene.h"
 #include "pipeline/tradeoff/field_error.h"
-#include "pipeline/tradeoff/path_reference.h"
+#include "pipeline/tradeoff/sweep_reference.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
 #include "tests/support/box_scene.h"
@@ -53,12 +53,12 @@ TEST(ValuesAt, AreNoneWhereNothingFacesThatWayOrIsNear) {
   for (const std::size_t i : {0u, 1u, 2u, 4u}) EXPECT_EQ(found.E[i], 0) << i;
 }
 
-TEST(PathReference, IsTheClosedFormOfAFurnaceWithinItsOwnErrorAndSharperWithEveryRound) {
+TEST(SweepReference, IsTheClosedFormOfAFurnaceWithinItsOwnErrorAndSharperWithEveryRound) {
   const TempFolder folder;
   const BoxScene box{.offset = {1e5, -2e5, 30}};
   const Scene scene = read_scene(box.write(folder), {});
   Observer nobody;
-  PathReference reference(scene, 1, nobody);
+  SweepReference reference(scene, 1, nobody);
   EXPECT_EQ(reference.rooms().size(), 1u);
   ASSERT_TRUE(reference.add_paths(64, {}));
   const double rough = reference.std_error_of(0);
@@ -79,12 +79,12 @@ TEST(PathReference, IsTheClosedFormOfAFurnaceWithinItsOwnErrorAndSharperWithEver
   EXPECT_NEAR(chi2 / n, 1.1, 5 * std::sqrt(2.9 / n));
 }
 
-TEST(PathReference, FindsTheErrorThatAFieldIsGiven) {
+TEST(SweepReference, FindsTheErrorThatAFieldIsGiven) {
   const TempFolder folder;
   const BoxScene box;
   const Scene scene = read_scene(box.write(folder), {});
   Observer nobody;
-  PathReference reference(scene, 1, nobody);
+  SweepReference reference(scene, 1, nobody);
   ASSERT_TRUE(reference.add_paths(1024, {}));
   const double exact = kWhiteEfficacy * box.radiosity();
   std::vector<double> field;
@@ -99,6 +99,30 @@ TEST(PathReference, FindsTheErrorThatAFieldIsGiven) {
   const FieldError none = error_of(reference, std::vector<double>(field.size(), exact));
   EXPECT_TRUE(none.worst.bound) << "an error of nothing is not told from the reference's own";
   EXPECT_GT(none.worst.rms_relative, 0);
+}
+
+TEST(SweepReference, GathersTellAnErrorThatFewPathsDoNot) {
+  const TempFolder folder;
+  const BoxScene box;
+  const Scene scene = read_scene(box.write(folder), {});
+  Observer nobody;
+  SweepReference reference(scene, 1, nobody);
+  ASSERT_TRUE(reference.add_paths(64, {}));
+  const double exact = kWhiteEfficacy * box.radiosity();
+  std::vector<double> field;
+  for (std::size_t i = 0; i < reference.points().size(); ++i) field.push_back(exact * (i % 2 == 0 ? 1.01 : 0.99));
+  EXPECT_TRUE(error_of(reference, field).worst.bound);
+  const double blunt = reference.std_error_of(0);
+  ASSERT_TRUE(reference.add_gathers(Accuracy::draft, {}));
+  EXPECT_LT(reference.std_error_of(0), blunt / 5);
+  for (const ReferencePoint& at : reference.points()) {  // every ray meets the same radiosity: no noise at all
+    EXPECT_NEAR(at.gather, exact, 1e-3 * exact);
+    EXPECT_NEAR(at.other_gather, exact, 1e-3 * exact);
+  }
+  const FieldError error = error_of(reference, field);
+  EXPECT_FALSE(error.worst.bound);
+  EXPECT_NEAR(error.worst.rms_relative, 0.01, 5e-4);
+  ASSERT_TRUE(reference.add_paths(64, {})) << "paths go on afterwards";
 }
 
 Tradeoff::Row row(const std::string& method, double seconds, double rms) {

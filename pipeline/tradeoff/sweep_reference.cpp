@@ -1,4 +1,4 @@
-#include "pipeline/tradeoff/path_reference.h"
+#include "pipeline/tradeoff/sweep_reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +8,23 @@
 #include "pipeline/require_valid.h"
 #include "pipeline/scene_checks.h"
 #include "solver/evaluate/points_by_room.h"
+#include "solver/evaluate/two_gathers.h"
 #include "solver/illumination/illumination.h"
 #include "solver/model/error.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
+#include "solver/run/accuracy.h"
+#include "solver/run/solve.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
 namespace {
 
 constexpr std::size_t kPoints = 400, kPointsOfRoom = 64, kMostPoints = 2048;
+
+double squared(double x) { return x * x; }
 
 /// Patches of their own, with nothing simplified.
 PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observer& observer) {
@@ -39,7 +44,7 @@ PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observ
 
 }  // namespace
 
-PathReference::PathReference(const Scene& scene, std::uint64_t seed, Observer& observer)
+SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer)
     : seed_(seed), prepared_(prepare_reference(scene, seed, observer)), rays_(prepared_.scene.rays.with_nearer_ends()) {
   const PatchSet& patches = prepared_.scene.patches;
   const PointsByRoom by_room(patches);
@@ -56,17 +61,18 @@ PathReference::PathReference(const Scene& scene, std::uint64_t seed, Observer& o
   diagonal_ = length(repairs.upper - repairs.lower);
 }
 
-bool PathReference::add_paths(int paths, const Monitor& monitor) {
+ReceivingPoint SweepReference::place(std::size_t i) const {
+  const ReferencePoint& at = points_[i];
+  return {rays_.off_surface(at.p - prepared_.scene.patches.origin, at.n), at.n};
+}
+
+bool SweepReference::add_paths(int paths, const Monitor& monitor) {
   const Problem problem{prepared_.scene.patches, rays_, prepared_.scene.lights};
   const Illumination light(problem);
-  const Vec3 origin = prepared_.scene.patches.origin;
-  const auto point_of = [&](std::size_t i) {
-    return ReceivingPoint{rays_.off_surface(points_[i].p - origin, points_[i].n), points_[i].n};
-  };
-  const PointIrradiance at = trace_paths_at(light, points_.size(), point_of, paths,
-                                            stream_key(seed_, kReferencePaths, rounds_), "reference", monitor);
+  const PointIrradiance at = trace_paths_at(
+      light, points_.size(), [&](std::size_t i) { return place(i); }, paths,
+      stream_key(seed_, kReferencePaths, ++rounds_), "reference", monitor);
   if (!at.complete()) return false;
-  ++rounds_;
   const double before = static_cast<double>(paths_), now = paths, all = before + now;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     ReferencePoint& to = points_[i];
@@ -77,13 +83,34 @@ bool PathReference::add_paths(int paths, const Monitor& monitor) {
   return true;
 }
 
-double PathReference::std_error_of(std::uint32_t room) const {
-  double weights = 0, level = 0, squares = 0;
+bool SweepReference::add_gathers(Accuracy accuracy, const Monitor& monitor) {
+  Prepared& scene = prepared_.scene;
+  const SolveOptions options{.accuracy = accuracy, .seed = seed_};
+  SolvedPatches solved =
+      solve(scene.problem(), std::move(prepared_.lightmap), scene.repairs.max_element, options, monitor);
+  if (monitor.should_stop() || solved.solution.stop != StopReason::converged) return false;
+  if (solved.elements.patch_count() > 0) scene.patches = std::move(solved.elements);
+  const Problem problem{scene.patches, rays_, scene.lights};
+  const auto found = two_gathers(
+      problem, solved.solution, points_.size(), [&](std::size_t i) { return place(i); }, effort(Accuracy::fine).sensors,
+      stream_key(seed_, kReferencePaths), monitor);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    points_[i].gather = kWhiteEfficacy * found[i][0];
+    points_[i].other_gather = kWhiteEfficacy * found[i][1];
+  }
+  return !found.empty();
+}
+
+double SweepReference::std_error_of(std::uint32_t room) const {
+  double weights = 0, level = 0, paths = 0, gathers = 0, of_mean = 0;
   for (const ReferencePoint& at : points_) {
     if (at.room != room) continue;
-    weights += at.weight, level += at.weight * at.E, squares += at.weight * at.std_error * at.std_error;
+    weights += at.weight, level += at.weight * at.E;
+    paths += at.weight * squared(at.std_error), of_mean += squared(at.weight * at.std_error);
+    gathers += at.weight * squared((at.gather - at.other_gather) / 2);
   }
-  return level > 0 ? std::sqrt(squares * weights) / level : std::numeric_limits<double>::infinity();
+  if (!(level > 0)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(has_gathers() ? gathers * weights + of_mean : paths * weights) / level;
 }
 
 }  // namespace clerestory

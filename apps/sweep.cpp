@@ -36,7 +36,7 @@ constexpr double kNearer = 1.0 / 3;  ///< the reference's own error, as a share 
 constexpr double kFirstPart = 0.25;  ///< of its time, after which it is known how sharp paths will be
 /// Paths that end blunter than this in some room get gathers beside them; these are from a radiosity that has some
 /// tenths of a per cent of error of its own, so not before.
-constexpr double kBlunt = 0.01;
+constexpr double kBlunt = 0.01, kVeryBlunt = 0.1;
 constexpr double kNextLevel = 2;  ///< a finer level takes so much longer at least
 constexpr std::uintmax_t kMostReport = 1 << 30;
 
@@ -203,15 +203,15 @@ double sharpen(SweepReference& reference, const Sweep& sweep, Clock::time_point 
   const auto start = Clock::now();
   const double time = left_until(end);
   const Monitor monitor{.progress = {}, .interrupted = [&] { return console.should_stop(); }, .deadline = end};
+  const auto in_some_room = [&](double std_error) {
+    for (std::uint32_t k = 0; k < reference.rooms().size(); ++k)
+      if (reference.rooms()[k].is_large && reference.std_error_of(k) > std_error) return true;
+    return false;
+  };
   const auto is_sharp = [&] {
-    return std::ranges::all_of(sweep.runs, [&](const SweptRun& run) {
+    return !in_some_room(kVeryBlunt) && std::ranges::all_of(sweep.runs, [&](const SweptRun& run) {
       const FieldError error = error_of(reference, run.E);
       return !error.worst.bound && reference.std_error_of(error.room) <= kNearer * error.worst.rms_relative;
-    });
-  };
-  const auto is_blunt = [&] {
-    return std::ranges::any_of(sweep.runs, [&](const SweptRun& run) {
-      return reference.std_error_of(error_of(reference, run.E).room) > kBlunt * std::sqrt(1 / kFirstPart);
     });
   };
   double per_path = 0;  // [s]
@@ -229,7 +229,7 @@ double sharpen(SweepReference& reference, const Sweep& sweep, Clock::time_point 
     }
   };
   add_paths((1 - kFirstPart) * time);
-  if (!console.should_stop() && !is_sharp() && is_blunt()) {
+  if (!console.should_stop() && !is_sharp() && in_some_room(kBlunt * std::sqrt(1 / kFirstPart))) {
     console.progress("gathers of the reference", 0);
     // At standard where a run at standard says that there is time.
     const auto fits = [&](const SweptRun& run) {
@@ -256,6 +256,8 @@ Tradeoff judge(const Sweep& sweep, const SweepReference& reference) {
     row.worst = figures(error.worst), row.all = figures(error.all);
     t.reference.std_error = std::max(t.reference.std_error, reference.std_error_of(error.room));
   }
+  for (std::uint32_t k = 0; k < reference.rooms().size(); ++k)
+    if (reference.rooms()[k].is_large && !reference.tells(k)) t.reference.not_told.push_back(reference.rooms()[k].name);
   t.reference.points = reference.points().size();
   t.reference.paths = reference.paths();
   t.reference.has_gathers = reference.has_gathers();

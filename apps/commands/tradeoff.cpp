@@ -48,7 +48,9 @@ void check_folder(const fs::path& folder) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw InputError("-o " + folder.string() + ": cannot be made: " + error.message() + ".");
+  if (error)
+    throw InputError("-o " + folder.string() + ": cannot be made: " + error.message() +
+                     "; choose another place for it.");
 }
 
 /// What holds for every run, and may not be meant to.

@@ -87,7 +87,7 @@ FieldError error_of(const SweepReference& reference, const std::vector<double>& 
   }
   FieldError error{summarise(all), {}, 0};
   for (std::size_t k = 0; k < of_room.size(); ++k) {
-    if (!reference.rooms()[k].is_large) continue;
+    if (!reference.rooms()[k].is_large || !reference.tells(static_cast<std::uint32_t>(k))) continue;
     const ErrorFigures figures = summarise(of_room[k]);
     if (figures.samples > 0 && (error.worst.samples == 0 || figures.rms_relative > error.worst.rms_relative))
       error.worst = figures, error.room = static_cast<std::uint32_t>(k);

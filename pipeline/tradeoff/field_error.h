@@ -23,8 +23,9 @@ struct FieldValues {
 FieldValues values_at(const std::vector<ReferencePoint>& points, const WrittenResult& result, double tolerance);
 
 struct FieldError {
-  ErrorFigures all;    ///< of all surfaces
-  ErrorFigures worst;  ///< of the room with the largest rms, among those that count by themselves
+  ErrorFigures all;  ///< of all surfaces
+  ErrorFigures
+      worst;  ///< of the room with the largest rms, among those that count by themselves and that the reference tells
   std::uint32_t room = 0;
 };
 

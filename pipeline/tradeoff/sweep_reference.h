@@ -56,6 +56,8 @@ class SweepReference {
   /// Root mean square of the points' standard errors in a room, relative to its mean [1]; infinite where nothing was
   /// found. With gathers: of these, and of the mean of all paths in the room.
   double std_error_of(std::uint32_t room) const;
+  /// Whether it can judge a room at all: where its error is half of the mean, most of the light is not found.
+  bool tells(std::uint32_t room) const { return std_error_of(room) <= 0.5; }
   /// How far a surface of the reference may be off the one that was read [m].
   double tolerance() const { return tolerance_; }
   double diagonal() const { return diagonal_; }  ///< of the model [m]

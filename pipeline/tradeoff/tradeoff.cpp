@@ -50,9 +50,13 @@ std::vector<std::string> choices_as_text(const Tradeoff& t) {
 
 std::string reference_as_text(const Tradeoff& t) {
   const Tradeoff::Reference& r = t.reference;
-  return "reference: " + grouped(static_cast<unsigned long long>(r.paths)) + " paths " +
-         (r.has_gathers ? "and two gathers " : "") + "from each of " + counted(r.points, "point") + ", " +
-         duration(r.seconds) + ", its own standard error at a point " + share_text(r.std_error) + " of the room's mean";
+  std::string line = "reference: " + grouped(static_cast<unsigned long long>(r.paths)) + " paths " +
+                     (r.has_gathers ? "and two gathers " : "") + "from each of " + counted(r.points, "point") + ", " +
+                     duration(r.seconds) + ", its own standard error at a point " + share_text(r.std_error) +
+                     " of the room's mean";
+  for (std::size_t k = 0; k < r.not_told.size(); ++k)
+    line += (k == 0 ? "; it finds too little light to judge '" : ", '") + quotable(r.not_told[k], 40) + "'";
+  return line;
 }
 
 std::string tradeoff_csv(const Tradeoff& t) {

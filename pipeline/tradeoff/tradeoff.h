@@ -47,6 +47,7 @@ struct Tradeoff {
     bool has_gathers = false;  ///< and two gathers from each, of which paths tell the level
     double std_error = 0;  ///< root mean square of the points' own, of the mean, in the worst of the rows' rooms [1]
     double seconds = 0;
+    std::vector<std::string> not_told;  ///< rooms whose light it does not find well enough to judge any run
   } reference;
 };
 

@@ -45,7 +45,7 @@ PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observ
 }  // namespace
 
 SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer)
-    : seed_(seed), prepared_(prepare_reference(scene, seed, observer)), rays_(prepared_.scene.rays.with_nearer_ends()) {
+    : seed_(seed), prepared_(prepare_reference(scene, seed, observer)) {
   const PatchSet& patches = prepared_.scene.patches;
   const PointsByRoom by_room(patches);
   if (!(by_room.total() > 0)) throw InputError(scene.file + ": no surface that light can reach has an area.");
@@ -63,11 +63,11 @@ SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer&
 
 ReceivingPoint SweepReference::place(std::size_t i) const {
   const ReferencePoint& at = points_[i];
-  return {rays_.off_surface(at.p - prepared_.scene.patches.origin, at.n), at.n};
+  return {prepared_.scene.rays.off_surface(at.p - prepared_.scene.patches.origin, at.n), at.n};
 }
 
 bool SweepReference::add_paths(int paths, const Monitor& monitor) {
-  const Problem problem{prepared_.scene.patches, rays_, prepared_.scene.lights};
+  const Problem problem = prepared_.scene.problem();
   const Illumination light(problem);
   const PointIrradiance at = trace_paths_at(
       light, points_.size(), [&](std::size_t i) { return place(i); }, paths,
@@ -90,7 +90,7 @@ bool SweepReference::add_gathers(Accuracy accuracy, const Monitor& monitor) {
       solve(scene.problem(), std::move(prepared_.lightmap), scene.repairs.max_element, options, monitor);
   if (monitor.should_stop() || solved.solution.stop != StopReason::converged) return false;
   if (solved.elements.patch_count() > 0) scene.patches = std::move(solved.elements);
-  const Problem problem{scene.patches, rays_, scene.lights};
+  const Problem problem = scene.problem();
   const auto found = two_gathers(
       problem, solved.solution, points_.size(), [&](std::size_t i) { return place(i); }, effort(Accuracy::fine).sensors,
       stream_key(seed_, kReferencePaths), monitor);

@@ -66,7 +66,6 @@ class SweepReference {
   ReceivingPoint place(std::size_t i) const;
   std::uint64_t seed_, rounds_ = 0;
   PreparedToSolve prepared_;
-  RayScene rays_;  ///< with ends nearer to their surfaces than those of any result
   std::vector<ReferencePoint> points_;
   std::vector<ReferenceRoom> rooms_;
   long long paths_ = 0;

@@ -13,6 +13,7 @@
 #include "io/read_scene.h"
 #include "pipeline/tradeoff/field_error.h"
 #include "pipeline/tradeoff/sweep_reference.h"
+#include "solver/form_factors/point_to_polygon.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
 #include "tests/support/box_scene.h"
@@ -99,6 +100,22 @@ TEST(SweepReference, FindsTheErrorThatAFieldIsGiven) {
   const FieldError none = error_of(reference, std::vector<double>(field.size(), exact));
   EXPECT_TRUE(none.worst.bound) << "an error of nothing is not told from the reference's own";
   EXPECT_GT(none.worst.rms_relative, 0);
+}
+
+TEST(SweepReference, IsTheFormFactorOfParallelPlates) {
+  const Scene scene = read_scene(CLERESTORY_SOURCE_DIR "/data/scenes/parallel_plates.json", {});
+  Observer nobody;
+  SweepReference reference(scene, 1, nobody);
+  ASSERT_TRUE(reference.add_paths(2048, {}));
+  const std::vector<Vec3> lower = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  double sum = 0, variance = 0, count = 0;
+  for (const ReferencePoint& at : reference.points()) {
+    if (at.p.z < 0.5) continue;  // the lower plate glows, and gets back what the upper one reflects
+    const double exact = kWhiteEfficacy * 1000 * point_to_polygon(at.p, at.n, lower);
+    sum += at.E / exact - 1, variance += std::pow(at.std_error / exact, 2), ++count;
+  }
+  ASSERT_GT(count, 100);
+  EXPECT_NEAR(sum / count, 0, 4 * std::sqrt(variance) / count);
 }
 
 TEST(SweepReference, GathersTellAnErrorThatFewPathsDoNot) {

@@ -85,7 +85,7 @@ bool SweepReference::add_paths(int paths, const Monitor& monitor) {
 
 bool SweepReference::add_gathers(Accuracy accuracy, const Monitor& monitor) {
   Prepared& scene = prepared_.scene;
-  const SolveOptions options{.accuracy = accuracy, .seed = seed_};
+  const SolveOptions options{.accuracy = accuracy, .seed = stream_key(seed_, kReferencePaths)};
   SolvedPatches solved =
       solve(scene.problem(), std::move(prepared_.lightmap), scene.repairs.max_element, options, monitor);
   if (monitor.should_stop() || solved.solution.stop != StopReason::converged) return false;

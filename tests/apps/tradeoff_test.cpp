@@ -96,14 +96,20 @@ TEST(Tradeoff, SolvesByEveryMethodAndTellsTimeMemoryAndErrorOfEach) {
 
 TEST(Tradeoff, LeavesOutWhatIsRefusedAndSaysWhy) {
   const TempFolder folder, out;
-  const std::string scene = coarse_room(folder, R"("max_element": 0.4, "memory_limit": "38MiB")");
-  const ProgramRun run = run_program({"tradeoff", scene, "-o", out / "dir", "--time-limit", "10"});
+  BoxScene{}.write(folder);
+  folder.write("mirror.obj", "v 2 1 0.5\nv 3 1 0.5\nv 3 1 1.5\nv 2 1 1.5\no sheet\nusemtl mirror\nf 1 2 3 4\n");
+  const std::string scene = folder.write("mirror.json", R"({ "geometry": [{ "file": "room.obj" },
+    { "file": "mirror.obj" }], "materials": { "wall": { "sides": 1, "reflectance": 0.5 },
+    "mirror": { "type": "mirror", "reflectance": 0.9 } }, "luminaires": [{ "type": "point", "position": [1, 2, 2],
+    "luminous_flux": 800 }], "solver": { "max_element": 2 } })");
+  const ProgramRun run = run_program({"tradeoff", scene, "-o", out / "dir"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto rows = rows_of(out / "dir/tradeoff.csv");
-  EXPECT_TRUE(rows.contains("hierarchical --accuracy draft")) << run.err;
-  EXPECT_FALSE(rows.contains("gauss-seidel --accuracy draft")) << run.err;
+  EXPECT_EQ(rows.size(), 9u) << run.err;
+  EXPECT_TRUE(rows.contains("path --accuracy fine"));
+  EXPECT_NE(run.out.find("9 runs, 6 left out"), std::string::npos) << run.out;
   const std::string page = read_text(out / "dir/index.html");
-  EXPECT_NE(page.find("gauss-seidel --accuracy draft: the full form-factor matrix of "), std::string::npos) << run.err;
+  EXPECT_NE(page.find("gauss-seidel --accuracy draft: the scene has mirrors"), std::string::npos) << run.err;
 }
 
 TEST(Tradeoff, RefusesAFileForItsFolderAndASceneWithoutLight) {

@@ -107,6 +107,12 @@ void Console::fail(const std::string& said) {
   std::cerr << "error: " << line << std::endl;
 }
 
+void Console::step(const std::string& line) {
+  log("", line);
+  progress_line_.clear();
+  if (!quiet_) std::cerr << line << std::endl;
+}
+
 void Console::note(const std::string& line) {
   log("", line);
   if (!verbose_) return;
@@ -133,6 +139,11 @@ double Console::elapsed() const {
 }
 
 std::size_t peak_memory_bytes() {
+  // Not ru_maxrss where there is better: it counts what the process held that this one was started from.
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  for (std::size_t kib = 0; status >> word;)
+    if (word == "VmHWM:" && status >> kib) return kib * 1024;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB

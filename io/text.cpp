@@ -140,6 +140,24 @@ std::string quotable(std::string_view s, std::size_t longest) {
   return i < clean.size() || s.size() > 4 * longest + 4 ? quoted + "\u2026" : quoted;
 }
 
+std::string xml_text(std::string_view s) {
+  std::string out;
+  for (const char c : clean_text(s)) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else if (c == '"') {
+      out += "&quot;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
 std::string message_line(std::string_view message, std::size_t longest) {
   std::string line;
   for (std::size_t begin = 0; begin <= message.size();) {

@@ -32,6 +32,8 @@ std::optional<double> to_number(std::string_view s);
 std::optional<double> to_decimal(std::string_view s);
 /// s with control characters and what is not UTF-8 replaced by '?': fit for messages, XML and JSON.
 std::string clean_text(std::string_view s);
+/// clean_text(s) with the signs that XML and HTML take for their own written otherwise.
+std::string xml_text(std::string_view s);
 /// A message as one line that can be shown: clean_text(), and words of more than `longest` characters cut, for nobody
 /// reads them. Paths stay whole.
 std::string message_line(std::string_view message, std::size_t longest = 200);

@@ -1,8 +1,10 @@
 #pragma once
-// The door to OpenImageIO: a module of its own, loaded when a scene has a sky image or textures. OpenImageIO brings
-// some 250 libraries along; linked into the program they would cost every start half a second.
+// The door to OpenImageIO: a module of its own, loaded when a scene has a sky image or textures, and when a picture is
+// written. OpenImageIO brings some 250 libraries along; linked into the program they would cost every start half a
+// second.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace clerestory {
 
@@ -22,8 +24,12 @@ using DecodeImage = void(const char* file, const char* format, void* to, PutByte
 using ImageMean = void(const char* file, const void* bytes, std::size_t size, const char* format, void* to,
                        PutBytes* put);
 
+/// Bytes of a PNG file of three bytes a pixel, row by row from the top. False: it cannot be made.
+using EncodePng = bool(int width, int height, const std::uint8_t* rgb, void* to, PutBytes* put);
+
 inline constexpr const char* kDecodeImageModule = "clerestory_images.so";
 inline constexpr const char* kDecodeImageSymbol = "clerestory_decode_image";
 inline constexpr const char* kImageMeanSymbol = "clerestory_image_mean";
+inline constexpr const char* kEncodePngSymbol = "clerestory_encode_png";
 
 }  // namespace clerestory

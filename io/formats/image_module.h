@@ -1,5 +1,6 @@
 #pragma once
-// The module that decodes images, from the side that loads it: in a child process, see run_apart.h.
+// The module that decodes and encodes images, from the side that loads it: to decode, in a child process, see
+// run_apart.h.
 
 #include <cstddef>
 #include <string>

@@ -106,6 +106,8 @@ ErrorFigures figures_of(const Samples& samples, const Squares& s, const Referenc
   };
   e.median_relative = samples.percentile(0.5, relative) * without_noise;
   e.p95_relative = samples.percentile(0.95, relative) * without_noise;
+  e.p99_relative = samples.percentile(0.99, relative) * without_noise;
+  e.bias_relative = samples.mean([](const Comparison& c) { return c.x; }) / s.level - 1;
   return e;
 }
 

@@ -7,10 +7,10 @@
 
 namespace clerestory {
 
-/// Relative to the mean of the reference: sqrt(mean((x - r)^2)) / mean(r), reference noise taken out. Median and p95
-/// are relative to each point's own reference.
+/// Relative to the mean of the reference: sqrt(mean((x - r)^2)) / mean(r), reference noise taken out, and the bias
+/// (mean(x) - mean(r)) / mean(r). Median, p95 and p99 are relative to each point's own reference.
 struct ErrorFigures {
-  double rms_relative = 0, median_relative = 0, p95_relative = 0;
+  double rms_relative = 0, median_relative = 0, p95_relative = 0, p99_relative = 0, bias_relative = 0;
   std::size_t samples = 0;  ///< 0: stopped before anything was measured, or no light arrives at any of the points
   double confidence = 0;    ///< half-width of the 95 % interval of rms_relative
   bool bound = false;       ///< the error is below what the references resolve: these are upper bounds, not values

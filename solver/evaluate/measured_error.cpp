@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "solver/evaluate/points_by_room.h"
+#include "solver/evaluate/two_gathers.h"
 #include "solver/gather/gather.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
-#include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
 
@@ -26,7 +26,6 @@ constexpr std::size_t kFewestPoints = 8;  ///< in rooms so bright that paths har
 constexpr std::size_t kMostPoints = 1 << 12;
 
 constexpr std::size_t kPointsOfRoom = 24;  ///< at least, in the mean
-constexpr double kLargeRoom = 0.01;        ///< share of all area
 constexpr double kShareOfRays = 0.03;      ///< of those that the result took
 
 }  // namespace
@@ -69,28 +68,6 @@ struct References {
   unsigned long long rays = 0;
   bool complete = false;
 };
-
-/// Sets both gathers of all comparisons, or none of them when the monitor stops it.
-void add_gathers(const Problem& problem, const Solution& solution, const PointOf& point_of,
-                 const GatherQuality& quality, std::uint64_t key, const Monitor& monitor,
-                 std::vector<Comparison>& comparisons) {
-  const Illumination light = gather_illumination_by_slits(problem, solution.B, solution.slit_light, key, monitor);
-  // The points of one pattern share its strata, so what one of them makes of chance the next one does, too: several.
-  constexpr std::size_t kPatterns = 8;
-  std::vector<std::array<double, 2>> found(comparisons.size());
-  for (std::size_t p = 0; p < kPatterns; ++p) {
-    const std::size_t count = (comparisons.size() + kPatterns - 1 - p) / kPatterns;
-    for (std::size_t which = 0; which < 2; ++which) {
-      const GatherPattern pattern(quality, stream_key(key, kErrorGathers, 2 * p + which));
-      const PointIrradiance at = gather_at(
-          light, count, [&](std::size_t k) { return point_of(p + k * kPatterns); }, pattern, "error", monitor);
-      if (!at.complete()) return;
-      for (std::size_t k = 0; k < count; ++k) found[p + k * kPatterns][which] = luminous_mean(at.E[k]);
-    }
-  }
-  for (std::size_t k = 0; k < found.size(); ++k)
-    comparisons[k].gather = found[k][0], comparisons[k].other_gather = found[k][1];
-}
 
 /// Traces paths for references at the places of samples whose x is set, as many as the effort allows. Stopped by the
 /// monitor, it takes those that are there.
@@ -144,95 +121,46 @@ std::vector<Comparison> compare(const Problem& problem, const std::vector<Compar
   const auto number_of = [&](std::size_t k) { return k * samples.size() / count; };
   References all = trace(count, key, paths, number_of);
   if (all.at.size() < pilot.at.size()) return pilot.at;
-  if (all.complete && solution.std_error.value.empty())
-    add_gathers(
-        problem, solution, [&](std::size_t k) { return point_of(number_of(k)); }, effort.gather, key, monitor, all.at);
+  if (all.complete && solution.std_error.value.empty()) {
+    const auto found = two_gathers(
+        problem, solution, all.at.size(), [&](std::size_t k) { return point_of(number_of(k)); }, effort.gather, key,
+        monitor);
+    for (std::size_t k = 0; k < found.size(); ++k) all.at[k].gather = found[k][0], all.at[k].other_gather = found[k][1];
+  }
   return all.at;
 }
 
-/// Patches one after another, room after room, each as long as its chance to be looked at.
-class PatchesByRoom {
- public:
-  PatchesByRoom(const PatchSet& patches, const Field& E)
-      : patches_(patches),
-        order_(patches.patch_count()),
-        cumulative_(patches.patch_count()),
-        parts_(std::max<std::size_t>(1, patches.rooms.size())),
-        weight_(parts_.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) { return room_of(i); });
-    for (std::size_t k = 0; k < patches.rooms.size(); ++k) parts_[k].name = patches.rooms[k];
-    if (patches.rooms.empty()) parts_[0].name = "all surfaces";
-    const double all = patches.total_area();
-    if (!(all > 0)) return;
-    for (const std::uint32_t i : order_) {
-      parts_[room_of(i)].area += patches.area[i];
-      parts_[room_of(i)].mean_illuminance += photometric(E[i]) * patches.area[i];
-    }
-    double roots = 0, large = 0;
-    for (ErrorOfPart& p : parts_) {
-      if (p.area > 0) p.mean_illuminance /= p.area;
-      roots += std::sqrt(p.area), large += p.area >= kLargeRoom * all;
-    }
-    large_rooms_ = static_cast<std::size_t>(large);
-    for (std::size_t k = 0; k < parts_.size(); ++k) {
-      // A third of the looks go by area, a third by its root, and a third to each large room alike.
-      const double a = parts_[k].area;
-      const double looks = (a / all + std::sqrt(a) / roots + (a >= kLargeRoom * all ? 1 / large : 0)) / 3;
-      weight_[k] = looks > 0 ? a / all / looks : 0;
-    }
-    for (std::size_t k = 0; k < order_.size(); ++k) {
-      const double weight = weight_[room_of(order_[k])];
-      cumulative_[k] = total_ += weight > 0 ? patches.area[order_[k]] / weight : 0;
-    }
-  }
-
-  double total() const { return total_; }
-  std::size_t large_rooms() const { return large_rooms_; }
-  const std::vector<ErrorOfPart>& parts() const { return parts_; }
-  struct Found {
-    std::size_t patch;
-    std::uint32_t room;
-    double weight;
-  };
-  Found at(double place) const {
-    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), place);
-    const std::size_t k =
-        std::min<std::size_t>(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1);
-    return {order_[k], room_of(order_[k]), weight_[room_of(order_[k])]};
-  }
-
- private:
-  std::uint32_t room_of(std::uint32_t i) const { return patches_.room.empty() ? 0u : patches_.room[i]; }
-  const PatchSet& patches_;
-  std::vector<std::uint32_t> order_;
-  std::vector<double> cumulative_;
-  std::vector<ErrorOfPart> parts_;
-  std::vector<double> weight_;
-  double total_ = 0;
-  std::size_t large_rooms_ = 0;
-};
+/// Rooms with their area and what the result says of their light.
+std::vector<ErrorOfPart> parts_of(const PointsByRoom& by_room, const PatchSet& patches, const Field& E) {
+  std::vector<ErrorOfPart> parts(by_room.areas().size());
+  for (std::size_t k = 0; k < patches.rooms.size(); ++k) parts[k].name = patches.rooms[k];
+  if (patches.rooms.empty()) parts[0].name = "all surfaces";
+  for (std::size_t k = 0; k < parts.size(); ++k) parts[k].area = by_room.areas()[k];
+  for (std::size_t i = 0; i < patches.patch_count(); ++i)
+    parts[by_room.room_of(i)].mean_illuminance += photometric(E[i]) * patches.area[i];
+  for (ErrorOfPart& p : parts)
+    if (p.area > 0) p.mean_illuminance /= p.area;
+  return parts;
+}
 
 }  // namespace
 
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const Solution& solution,
                             const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  const PatchesByRoom by_room(patches, solution.E);
+  const PointsByRoom by_room(patches);
   if (!(by_room.total() > 0)) return {};
   const RayScene rays = problem.rays.with_nearer_ends();
 
+  const std::vector<PointInRoom> points = by_room.points(kMostPoints, stream_key(seed, kErrorPoints));
   std::vector<Comparison> samples(kMostPoints);
   std::vector<ReceivingPoint> places(kMostPoints);
-  RandomStream random(seed, kErrorPoints);
   for (std::size_t s = 0; s < kMostPoints; ++s) {
-    const auto [i, room, weight_of_room] =
-        by_room.at((static_cast<double>(s) + random.uniform()) / static_cast<double>(kMostPoints) * by_room.total());
+    const auto& [i, room, weight_of_room, u, v] = points[s];
     samples[s].part = room;
     samples[s].weight = weight_of_room;
     samples[s].element = luminous_mean(solution.E[i]);
     samples[s].albedo = luminous_mean(patches.albedo(i));
-    const double u = random.uniform(), v = random.uniform();
     // The map is linear in the corners, so it interpolates their values as well as their positions.
     const auto weight = point_on_triangle({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, u, v);
     for (int k = 0; k < 3; ++k)
@@ -245,7 +173,7 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
   return summarise_parts(compare(
                              {patches, rays, problem.lights}, samples, [&](std::size_t i) { return places[i]; },
                              solution, spend, stream_key(seed, kErrorPaths), monitor),
-                         by_room.parts());
+                         parts_of(by_room, patches, solution.E));
 }
 
 MeasuredError measure_sensor_error(const Problem& problem, std::span<const SensorPoint> points,

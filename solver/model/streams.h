@@ -43,6 +43,9 @@ enum Stream : std::uint64_t {
   kErrorPaths = 0x72,
   kSensorErrorPaths = 0x73,
   kErrorGathers = 0x74,
+  // Reference of a sweep over methods, by point and round.
+  kReferencePoints = 0x75,
+  kReferencePaths = 0x76,
   // Search for openings, by gap: judging them, sifting them, and once more. The stream takes the seed's place: a model
   // has the same openings for every seed.
   kGapRays = 0x81,

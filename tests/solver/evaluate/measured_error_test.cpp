@@ -88,6 +88,16 @@ TEST(MeasuredError, TakesPureNoiseForAlmostNothing) {
   EXPECT_GT(o.covered, 0.9);
 }
 
+TEST(MeasuredError, TellsBiasAndTheFarTail) {
+  // Without noise: 970 points are 1 % too bright, 20 too dark by 30 %, 10 by 60 %.
+  std::vector<Comparison> comparisons;
+  for (int i = 0; i < 1000; ++i) comparisons.push_back({.x = i < 970 ? 2.02 : i < 990 ? 1.4 : 0.8, .r = 2});
+  const ErrorFigures e = summarise(comparisons);
+  EXPECT_NEAR(e.bias_relative, 0.97 * 0.01 - 0.02 * 0.3 - 0.01 * 0.6, 1e-12);
+  EXPECT_NEAR(e.p95_relative, 0.01, 1e-12);
+  EXPECT_NEAR(e.p99_relative, 0.3, 1e-12);
+}
+
 TEST(MeasuredError, CountsComparisonsByTheAreaTheyStandFor) {
   // Nine tenths of the area are off by 1 %, one tenth by 10 %, and both were looked at equally often.
   std::vector<Comparison> comparisons;

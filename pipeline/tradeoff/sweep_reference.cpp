@@ -1,0 +1,116 @@
+#include "pipeline/tradeoff/sweep_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pipeline/require_valid.h"
+#include "pipeline/scene_checks.h"
+#include "solver/evaluate/points_by_room.h"
+#include "solver/evaluate/two_gathers.h"
+#include "solver/illumination/illumination.h"
+#include "solver/model/error.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
+#include "solver/model/units.h"
+#include "solver/paths/path_tracer.h"
+#include "solver/run/accuracy.h"
+#include "solver/run/solve.h"
+#include "solver/sampling/unit_square.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t kPoints = 400, kPointsOfRoom = 64, kMostPoints = 2048;
+
+double squared(double x) { return x * x; }
+
+/// Patches of their own, with nothing simplified.
+PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observer& observer) {
+  Settings settings;
+  settings.solve.seed = seed;
+  settings.solve.accuracy = Accuracy::fine;
+  settings.detail = 0;
+  require_valid(scene, settings);
+  warn_about_scene(scene, observer);
+  require_light(scene);
+  StageSeconds seconds;
+  // Nobody interrupts it: the program's own handler ends it while there is no result.
+  const Monitor monitor{.progress = [&](std::string_view stage, double done) { observer.progress(stage, done); },
+                        .interrupted = {}};
+  return *prepare_to_solve(scene, settings, observer, monitor, seconds);
+}
+
+}  // namespace
+
+SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer)
+    : seed_(seed), prepared_(prepare_reference(scene, seed, observer)) {
+  const PatchSet& patches = prepared_.scene.patches;
+  const PointsByRoom by_room(patches);
+  if (!(by_room.total() > 0)) throw InputError(scene.file + ": no surface that light can reach has an area.");
+  for (std::size_t k = 0; k < by_room.areas().size(); ++k)
+    rooms_.push_back({patches.rooms.empty() ? "all surfaces" : patches.rooms[k], by_room.areas()[k],
+                      by_room.areas()[k] >= kLargeRoom * patches.total_area()});
+  const std::size_t count = std::clamp(kPointsOfRoom * by_room.large_rooms(), kPoints, kMostPoints);
+  for (const PointInRoom& at : by_room.points(count, stream_key(seed, kReferencePoints)))
+    points_.push_back({point_on_triangle(patches.corner_positions(PatchId{at.patch}), at.u, at.v) + patches.origin,
+                       patches.normal[at.patch], at.room, at.weight});
+  const MeshReport& repairs = prepared_.scene.repairs;
+  tolerance_ = repairs.simplified_by + repairs.tolerance;
+  diagonal_ = length(repairs.upper - repairs.lower);
+}
+
+ReceivingPoint SweepReference::place(std::size_t i) const {
+  const ReferencePoint& at = points_[i];
+  return {prepared_.scene.rays.off_surface(at.p - prepared_.scene.patches.origin, at.n), at.n};
+}
+
+bool SweepReference::add_paths(int paths, const Monitor& monitor) {
+  const Problem problem = prepared_.scene.problem();
+  const Illumination light(problem);
+  const PointIrradiance at = trace_paths_at(
+      light, points_.size(), [&](std::size_t i) { return place(i); }, paths,
+      stream_key(seed_, kReferencePaths, ++rounds_), "reference", monitor);
+  if (!at.complete()) return false;
+  const double before = static_cast<double>(paths_), now = paths, all = before + now;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    ReferencePoint& to = points_[i];
+    to.E = (before * to.E + now * photometric(at.E[i])) / all;
+    to.std_error = std::hypot(before * to.std_error, now * photometric(at.std_error[i])) / all;
+  }
+  paths_ += paths;
+  return true;
+}
+
+bool SweepReference::add_gathers(Accuracy accuracy, const Monitor& monitor) {
+  Prepared& scene = prepared_.scene;
+  const SolveOptions options{.accuracy = accuracy, .seed = stream_key(seed_, kReferencePaths)};
+  SolvedPatches solved =
+      solve(scene.problem(), std::move(prepared_.lightmap), scene.repairs.max_element, options, monitor);
+  if (monitor.should_stop() || solved.solution.stop != StopReason::converged) return false;
+  if (solved.elements.patch_count() > 0) scene.patches = std::move(solved.elements);
+  const Problem problem = scene.problem();
+  const auto found = two_gathers(
+      problem, solved.solution, points_.size(), [&](std::size_t i) { return place(i); }, effort(Accuracy::fine).sensors,
+      stream_key(seed_, kReferencePaths), monitor);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    points_[i].gather = kWhiteEfficacy * found[i][0];
+    points_[i].other_gather = kWhiteEfficacy * found[i][1];
+  }
+  return !found.empty();
+}
+
+double SweepReference::std_error_of(std::uint32_t room) const {
+  double weights = 0, level = 0, paths = 0, gathers = 0, of_mean = 0;
+  for (const ReferencePoint& at : points_) {
+    if (at.room != room) continue;
+    weights += at.weight, level += at.weight * at.E;
+    paths += at.weight * squared(at.std_error), of_mean += squared(at.weight * at.std_error);
+    gathers += at.weight * squared((at.gather - at.other_gather) / 2);
+  }
+  if (!(level > 0)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(has_gathers() ? gathers * weights + of_mean : paths * weights) / level;
+}
+
+}  // namespace clerestory

@@ -43,6 +43,10 @@ enum Stream : std::uint64_t {
   kErrorPaths = 0x72,
   kSensorErrorPaths = 0x73,
   kErrorGathers = 0x74,
+  // Laws: in the seed's place, and by room.
+  kLawClosure = 0x76,
+  kLawDirect = 0x77,
+  kLawRays = 0x78,
   // Search for openings, by gap: judging them, sifting them, and once more. The stream takes the seed's place: a model
   // has the same openings for every seed.
   kGapRays = 0x81,

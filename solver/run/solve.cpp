@@ -24,6 +24,7 @@
 #include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
+#include "solver/run/check_laws.h"
 #include "solver/run/memory_estimate.h"
 #include "solver/run/sound_result.h"
 #include "solver/spaces/closure.h"
@@ -80,7 +81,8 @@ ShortestEdge shortest_edges(const PatchSet& patches, double longest_edge, const 
 }
 
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
-                                 const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug) {
+                                 const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug,
+                                 KeptTransport* keep) {
   require_possible(problem, options);
   const Effort e = effort_of(options);
   const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeastPlan);
@@ -93,14 +95,15 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
                                                              .shortest_edge = shortest_edge,
                                                              .most_elements = plan.most_elements,
                                                              .seed = options.seed,
-                                                             .debug = debug},
+                                                             .debug = debug,
+                                                             .keep = keep},
                                                 .vertices = {.tolerance = e.vertex_tolerance,
                                                              .shortest_edge = shortest_edge,
                                                              .most_points = plan.most_points,
                                                              .quality = e.vertices,
                                                              .seed = options.seed}},
                                                monitor);
-  return {std::move(field.elements), std::move(field.lightmap), std::move(field.solution)};
+  return {std::move(field.elements), std::move(field.lightmap), std::move(field.solution), {}};
 }
 
 /// The matrix methods know light as it arrives; a luminaire's flux that misses the patches belongs to the balance too.
@@ -143,7 +146,8 @@ bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const So
   return options.memory_limit == 0 || predicted_memory(whole(patches, map.position.size())) <= options.memory_limit;
 }
 
-Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor) {
+Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor,
+                          FormFactorMatrix* keep_matrix) {
   const Effort e = effort_of(options);
   require_possible(problem, options);
   const Illumination light(problem);
@@ -168,22 +172,24 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
     solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
     return solution;
   }
-  const FormFactorMatrix F =
+  FormFactorMatrix F =
       form_factor_matrix(problem.patches, problem.rays, matrix_options(problem.patches, options), monitor);
   monitor.say_result();
   const auto gather = options.method == Method::jacobi ? jacobi : gauss_seidel;
   Solution solution = gather(problem.patches, F, direct.E, {}, monitor);
   count_luminaires(solution.energy, problem.patches, direct);
   solution.rays += direct.rays + F.rays;
+  if (keep_matrix) *keep_matrix = std::move(F);
   return solution;
 }
 
 namespace {
 
 SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, const SolveOptions& options,
-                                    const Monitor& monitor) {
-  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor)};
-  auto& [elements, lightmap, solution] = solved;
+                                    const Monitor& monitor, FormFactorMatrix* keep_matrix) {
+  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor, keep_matrix), {}};
+  VertexLightmap& lightmap = solved.lightmap;
+  Solution& solution = solved.solution;
   average_to_points(problem.patches, solution.E, lightmap);
   const Effort e = effort_of(options);
   if (!e.gathers_vertices || monitor.should_stop()) return solved;
@@ -201,9 +207,18 @@ SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, 
 
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
                     const Monitor& monitor, HierarchyDebug* debug) {
-  SolvedPatches solved = options.method == Method::hierarchical
-                             ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug)
-                             : solve_by_other_method(problem, std::move(map), options, monitor);
+  UsedTransport used;
+  KeptTransport* const keep_links = options.check_laws ? &used.links : nullptr;
+  FormFactorMatrix* const keep_matrix = options.check_laws ? &used.matrix : nullptr;
+  SolvedPatches solved =
+      options.method == Method::hierarchical
+          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug, keep_links)
+          : solve_by_other_method(problem, std::move(map), options, monitor, keep_matrix);
+  if (options.check_laws) {
+    const PatchSet& elements = solved.elements.patch_count() > 0 ? solved.elements : problem.patches;
+    solved.laws = check_laws({elements, problem.rays, problem.lights}, problem, solved.lightmap, solved.solution, used,
+                             options, monitor);
+  }
   require_sound(solved.solution.E, "irradiance of the elements");
   require_sound(solved.solution.B, "radiosity of the elements");
   require_sound(solved.lightmap.E, "irradiance at the points");

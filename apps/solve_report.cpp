@@ -158,8 +158,9 @@ std::string law_line(const LawCheck& check, const std::string& method) {
   const std::string name = in_words(check.law) + ": ";
   if (!check.not_checked.empty()) return name + "not checked for " + method + ", " + check.not_checked;
   const auto unresolved = std::ranges::count_if(check.rooms, [](const LawInRoom& room) { return !room.resolved; });
-  const std::string but =
-      unresolved > 0 ? "; " + counted(static_cast<unsigned long long>(unresolved), "room") + " too dark to tell" : "";
+  const std::string but = unresolved > 0 ? "; " + counted(static_cast<unsigned long long>(unresolved), "room") +
+                                               " too small or too dark to tell"
+                                         : "";
   const LawInRoom* worst = check.worst();
   if (!worst) return name + "no room has light to tell by" + but;
   return name + (check.holds() ? "holds" : "BROKEN") + ", off by " + percent(worst->worst) + " at worst, in '" +

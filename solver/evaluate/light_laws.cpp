@@ -38,7 +38,24 @@ class Largest {
 /// A sum that is estimated.
 struct Estimate {
   double value = 0, variance = 0;
+  double of_variance = 0;  ///< sum of squares of the variances that were each found by one difference
 };
+
+/// So many standard errors of a normal distribution are how many where the error itself was found by `freedom`
+/// differences. Source: Wallace, "Bounds on normal approximations to Student's and the chi-square distributions", 1959.
+double student(double std_errors, double freedom) {
+  const double z = std_errors * (8 * freedom + 3) / (8 * freedom + 1);
+  return std::sqrt(freedom * std::expm1(z * z / freedom));
+}
+
+/// What an estimate of these parts may be off by.
+double unsure(const Estimate& a, const Estimate& b, double std_errors) {
+  const double variance = a.variance + b.variance, of_variance = a.of_variance + b.of_variance;
+  if (variance == 0) return 0;
+  const double factor =
+      of_variance > 0 ? student(std_errors, std::max(1.0, variance * variance / of_variance)) : std_errors;
+  return factor * std::sqrt(variance);
+}
 
 /// What the lights bring to each room [W]. The two halves of the rays differ by what they leave open.
 std::vector<Estimate> direct_flux(const Problem& problem, std::uint64_t seed, const Monitor& monitor) {
@@ -61,7 +78,8 @@ std::vector<Estimate> direct_flux(const Problem& problem, std::uint64_t seed, co
     const double x = patches.area[i] * luminous_mean(a[i]), y = patches.area[i] * luminous_mean(b[i]);
     Estimate& room = flux[room_of(patches, i)];
     room.value += (x + y) / 2;
-    room.variance += (x - y) * (x - y) / 4;
+    const double variance = (x - y) * (x - y) / 4;
+    room.variance += variance, room.of_variance += variance * variance;
   }
   return flux;
 }
@@ -193,10 +211,10 @@ LawCheck energy_of_rooms(const Problem& problem, const Problem& unhalved, const 
   WorstInRooms worst(patches.rooms);
   for (std::size_t r = 0; r < found.size(); ++r) {
     const double E = found[r].value, off = std::abs(E - arrives[r].value);
-    const double unsure = kStdErrors * std::sqrt(arrives[r].variance + found[r].variance);
+    const double left_open = unsure(arrives[r], found[r], kStdErrors);
     const double all = E > 0 ? E : arrives[r].value;
     if (all == 0) continue;  // dark
-    worst.see(r, off / all, accuracy + unsure / all, std::isfinite(E) ? unsure <= kResolved * all : true);
+    worst.see(r, off / all, accuracy + left_open / all, !std::isfinite(E) || left_open <= kResolved * all);
   }
   LawCheck check{Law::energy, worst.rooms(), {}};
   check.rooms.push_back({"whole scene", std::abs(solution.energy.imbalance()), accuracy});

@@ -25,7 +25,8 @@ LawCheck radiosity_from_irradiance(const PatchSet& patches, const Solution& solu
 /// problem   with the elements that the solution belongs to. unhalved: with the patches that they were halved from, or
 /// the
 ///           same: what lights bring to a room does not hang on the elements.
-/// accuracy  what may be off of a room's mean [1]; 4 standard errors of these rays are added. A room is not resolved
+/// accuracy  what may be off of a room's mean [1]; 4 standard errors of these rays are added, more
+///           where few patches tell of them. A room is not resolved
 ///           where these are more than a quarter of its light.
 /// Needs     B as it was used: rays that leave a patch carry A B.
 LawCheck energy_of_rooms(const Problem& problem, const Problem& unhalved, const Solution& solution, double accuracy,

@@ -23,6 +23,7 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   if (arguments.memory_limit) s.memory_limit = to_memory_size(*arguments.memory_limit);
   if (arguments.channels) s.channels = *arguments.channels == "1" ? 1 : 3;
   if (arguments.grey) s.channels = 1;
+  s.solve.check_laws = arguments.check;
   s.debug = !arguments.debug_output.empty();
   return s;
 }

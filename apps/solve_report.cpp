@@ -46,6 +46,23 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   return out;
 }
 
+/// What a law is about, for people.
+std::string in_words(Law law) {
+  switch (law) {
+    case Law::reciprocity:
+      return "surfaces see as much of each other";
+    case Law::row_sums:
+      return "what leaves arrives or is lost";
+    case Law::no_negative_light:
+      return "no light below zero";
+    case Law::radiosity:
+      return "sent = emitted + reflected";
+    case Law::energy:
+      return "no light lost or made";
+  }
+  return {};
+}
+
 /// Characters of UTF-8.
 std::size_t width(const std::string& s) {
   return static_cast<std::size_t>(std::ranges::count_if(s, [](char c) { return (c & 0xc0) != 0x80; }));
@@ -137,6 +154,19 @@ std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors)
   return lines;
 }
 
+std::string law_line(const LawCheck& check, const std::string& method) {
+  const std::string name = in_words(check.law) + ": ";
+  if (!check.not_checked.empty()) return name + "not checked for " + method + ", " + check.not_checked;
+  const auto unresolved = std::ranges::count_if(check.rooms, [](const LawInRoom& room) { return !room.resolved; });
+  const std::string but = unresolved > 0 ? "; " + counted(static_cast<unsigned long long>(unresolved), "room") +
+                                               " too small or too dark to tell"
+                                         : "";
+  const LawInRoom* worst = check.worst();
+  if (!worst) return name + "no room has light to tell by" + but;
+  return name + (check.holds() ? "holds" : "BROKEN") + ", off by " + percent(worst->worst) + " at worst, in '" +
+         quotable(worst->room, 40) + "'; " + percent(worst->bound) + " may be" + but;
+}
+
 void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.method = s.solution.method;
   r.seconds = s.seconds;
@@ -162,6 +192,7 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.error_sets = parts_of(s.error_sensors);
   if (const ErrorOfPart* worst = s.error ? s.error->worst() : nullptr)
     r.worst_space = static_cast<std::size_t>(worst - s.error->parts.data());
+  r.laws = s.laws;
   r.daylight = scene.daylight;
   r.luminaires = luminaires_by_file(scene.lights);
   if (s.sensor_E.size() > 0) r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));
@@ -192,6 +223,7 @@ void say_summary(const RunReport& r, const Solved& s, Console& console) {
     console.say("  sensors " + error_line(*s.error_sensors) + but);
   else if (std::ranges::all_of(s.sensor_E.value, [](double value) { return value == 0; }) && !r.sensors.empty())
     console.say("  sensors no light arrives at them, so there is no error to tell");
+  for (const LawCheck& check : s.laws) console.say("  law     " + law_line(check, r.method));
   if (!r.sensors.empty())
     for (const std::string& line : sensor_table(r.sensors)) console.say("  " + line);
   console.say("  time    " + duration(t.total) + " (read " + duration(t.read) + ", mesh " + duration(t.mesh) +

@@ -123,12 +123,34 @@ Json json_of(const RunReport::PartError& p) {
   return json;
 }
 
+Json json_of(const LawInRoom& room) {
+  return {{"name", room.room},
+          {"worst", room.worst},
+          {"bound", room.bound},
+          {"resolved", room.resolved},
+          {"holds", room.holds()}};
+}
+
+Json json_of(const LawCheck& check);
+
 Json json_of(const NotRead& n) { return {{"what", n.what}, {"count", n.count}, {"first", n.first}}; }
 
 template <class Row>
 Json array_of(const std::vector<Row>& rows) {
   Json json = Json::array();
   for (const Row& row : rows) json.push_back(json_of(row));
+  return json;
+}
+
+Json json_of(const LawCheck& check) {
+  Json json = {{"law", kLawNames[static_cast<std::size_t>(check.law)]}};
+  if (!check.not_checked.empty()) {
+    json["not_checked"] = check.not_checked;
+    return json;
+  }
+  json["holds"] = check.holds();
+  if (const LawInRoom* worst = check.worst()) json["worst"] = json_of(*worst);
+  json["spaces"] = array_of(check.rooms);
   return json;
 }
 
@@ -225,6 +247,7 @@ void write_report(AtomicFile& file, const RunReport& report) {
   if (report.error) json["error"]["spaces"] = array_of(report.error_spaces);
   if (report.error && report.worst_space) json["error"]["worst"] = json_of(report.error_spaces[*report.worst_space]);
   if (report.error_sensors) json["error_sensors"]["sets"] = array_of(report.error_sets);
+  if (!report.laws.empty()) json["laws"] = array_of(report.laws);
   if (!report.luminaires.empty()) json["luminaires"] = array_of(report.luminaires);
   if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
   if (!report.spaces.empty()) json["spaces"] = array_of(report.spaces);

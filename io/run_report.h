@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/atomic_file.h"
+#include "solver/model/laws.h"
 #include "solver/model/mesh_report.h"
 #include "solver/model/scene.h"
 #include "solver/model/solution.h"
@@ -55,6 +56,7 @@ struct RunReport {
   std::optional<Error> error, error_sensors;        ///< empty when not measured
   std::vector<PartError> error_spaces, error_sets;  ///< by room, by set of sensors
   std::optional<std::size_t> worst_space;           ///< in error_spaces
+  std::vector<LawCheck> laws;                       ///< empty when not checked
   std::optional<Daylight> daylight;
   /// Luminaires of one photometric file (or all points, or all spots) in one group.
   struct Luminaires {

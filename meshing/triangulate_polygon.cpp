@@ -18,6 +18,21 @@ bool is_convex(std::span<const Vec3> polygon, const Vec3& normal) {
   return true;
 }
 
+/// That of the area, or, where parts of a polygon that crosses itself cancel, that of its largest triangle from the
+/// first corner.
+Vec3 plane_normal(std::span<const Vec3> polygon) {
+  constexpr double kCancelled = 1e-9;
+  Vec3 largest;
+  double all = 0;
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+    const Vec3 part = cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]) / 2;
+    all += length(part);
+    if (length(part) > length(largest)) largest = part;
+  }
+  const Vec3 area = area_vector(polygon);
+  return normalized(length(area) > kCancelled * all ? area : largest);
+}
+
 }  // namespace
 
 Vec3 area_vector(std::span<const Vec3> polygon) {
@@ -32,7 +47,7 @@ PolygonTriangles triangulate_polygon(std::span<const Vec3> polygon, std::size_t 
   PolygonTriangles result;
   if (n < 3) return result;
   if (n == 3) return {{{0, 1, 2}}, {}};
-  const Vec3 normal = normalized(area_vector(polygon));
+  const Vec3 normal = plane_normal(polygon);
   if (normal == Vec3{}) return result;
   if (n == 4 && is_convex(polygon, normal)) {
     // The shorter diagonal gives the better angles; within rounding the first, so that any scale gives the same.

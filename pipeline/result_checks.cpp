@@ -79,7 +79,40 @@ void warn_about_sensors(const Solved& s, Observer& observer) {
                 "surfaces. Do not rely on single values; try --accuracy fine.");
 }
 
+/// What it means for a person when a law is broken.
+std::string broken(Law law) {
+  switch (law) {
+    case Law::reciprocity:
+      return "two surfaces exchange light as if one saw more of the other than the other of it (reciprocity)";
+    case Law::row_sums:
+      return "more or less light leaves a surface than arrives elsewhere and is lost (row sums)";
+    case Law::no_negative_light:
+      return "there is less than no light on a surface";
+    case Law::radiosity:
+      return "what a surface sends is not what it emits and reflects";
+    case Law::energy:
+      return "there is more or less light than was sent there (energy)";
+  }
+  return {};
+}
+
+void warn_about_laws(const Solved& s, Observer& observer) {
+  for (const LawCheck& check : s.laws) {
+    const LawInRoom* worst = check.worst();
+    if (check.holds() || !worst) continue;
+    const auto others = std::ranges::count_if(check.rooms, [](const LawInRoom& room) { return !room.holds(); }) - 1;
+    observer.warn("in '" + worst->room + "' " +
+                  (others > 0 ? "and " + counted(static_cast<unsigned long long>(others), "other room") + " " : "") +
+                  broken(check.law) + ": it is off by " + percent(worst->worst) + ", and up to " +
+                  percent(worst->bound) +
+                  " is what the accuracy and the check leave open. Do not rely on this result there; try --accuracy "
+                  "fine, and look at the model for gaps and faces that lie in each other.");
+  }
+}
+
 }  // namespace
+
+bool keeps_laws(const Solved& s) { return std::ranges::all_of(s.laws, &LawCheck::holds); }
 
 void warn_about_result(const Solved& solved, Observer& observer) {
   if (solved.empty()) return;
@@ -87,6 +120,7 @@ void warn_about_result(const Solved& solved, Observer& observer) {
   warn_about_unknown(solved, observer);
   warn_about_error(solved, observer);
   warn_about_sensors(solved, observer);
+  warn_about_laws(solved, observer);
 }
 
 }  // namespace clerestory

@@ -129,6 +129,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
 
         out.openings = lights.sky_openings().size();
         out.patches = std::move(patches);
+        out.laws = std::move(solved.laws);
         out.lightmap = std::move(solved.lightmap);
         out.solution = std::move(solution);
         out.repairs = repairs;

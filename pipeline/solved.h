@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "pipeline/settings.h"
 #include "solver/evaluate/measured_error.h"
 #include "solver/model/hierarchy_debug.h"
+#include "solver/model/laws.h"
 #include "solver/model/mesh_report.h"
 #include "solver/model/patch_set.h"
 #include "solver/model/solution.h"
@@ -23,6 +25,7 @@ struct Solved {
   Field sensor_E;  ///< S x channels, by sensor of all sets, one set after the other [W/m2]; empty: there was no time
   Field sensor_std_error;                             ///< of these; empty unless paths estimated them
   std::optional<MeasuredError> error, error_sensors;  ///< empty when not measured
+  std::vector<LawCheck> laws;                         ///< empty unless asked for
   std::size_t buried_sensors = 0;                     ///< inside solids: their error is not part of error_sensors
   MeshReport repairs;
   LitSides lit_sides;
@@ -39,5 +42,8 @@ struct Solved {
 /// Whether the target error is met for sure, in the worst room and the worst set of sensors: the measured error and
 /// what is uncertain about it. True without a target.
 bool meets_target(const Solved& solved);
+
+/// Whether all laws hold that were checked. True when none was.
+bool keeps_laws(const Solved& solved);
 
 }  // namespace clerestory

@@ -27,7 +27,7 @@ struct Arguments {
   ReadOptions read;
   std::string input, output;
   std::optional<std::string> by;
-  int samples = SurfaceFactorOptions{}.samples;
+  int most_samples = 0;
 };
 
 constexpr std::array<std::string_view, 4> kGroupNames{"object", "material", "surface", "patch"};  // as in GroupBy
@@ -112,6 +112,23 @@ std::string four_digits(double value) {
   return text.data();
 }
 
+/// Pairs whose rays were used up before the standard error was small enough.
+void warn_of_errors(const SurfaceFactors& factors, const PatchGroups& groups, Console& console) {
+  const SurfaceFactor* worst = nullptr;
+  std::size_t missed = 0;
+  for (const SurfaceFactor& f : factors.rows) {
+    if (f.reached()) continue;
+    ++missed;
+    if (!worst || f.std_error / f.F > worst->std_error / worst->F) worst = &f;
+  }
+  if (!worst) return;
+  console.warn(counted(missed, "pair") + " of " + counted(factors.rows.size(), "pair") +
+               " did not reach a standard error of " + percent(kFactorError) +
+               " of F before its rays were used up; the worst, '" + groups.name[worst->from] + "' to '" +
+               groups.name[worst->to] + "', is at " + percent(worst->std_error / worst->F) +
+               ". std_error says what was reached; more rays: --samples.");
+}
+
 ExitCode formfactors_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.input, arguments.read);
@@ -128,7 +145,7 @@ ExitCode formfactors_command(const Arguments& arguments, Console& console) {
                      std::to_string(groups.name.size() * groups.name.size()) + " rows; at most " +
                      std::to_string(kMostGroups) + " groups are written. Use --by object or --by material.");
   const RayScene rays(patches);
-  const SurfaceFactorOptions options{.samples = arguments.samples, .seed = arguments.common.seed.value_or(1)};
+  const SurfaceFactorOptions options{.most_samples = arguments.most_samples, .seed = arguments.common.seed.value_or(1)};
   const SurfaceFactors factors = surface_form_factors(patches, rays, groups, options, console.monitor());
   if (!factors.complete) {
     console.warn("interrupted before the factors were complete; nothing is written.");
@@ -146,6 +163,7 @@ ExitCode formfactors_command(const Arguments& arguments, Console& console) {
   if (groups.name.size() > kRowsShown)
     console.say("row sums of " + std::to_string(groups.name.size() - kRowsShown) + " more groups are not shown");
   console.say("reciprocity error " + four_digits(factors.reciprocity_error));
+  warn_of_errors(factors, groups, console);
   RunReport report = new_report(arguments.input);
   report.counts.triangles = patches.triangle_count();
   report.counts.elements = patches.patch_count();
@@ -170,8 +188,10 @@ void add_formfactors_command(CLI::App& program, Task& task) {
                    "object, material, surface (the faces of an object in one plane) or patch (each triangle) "
                    "(default: object)");
   command
-      .add_option("--samples", arguments->samples,
-                  "rays for each pair of triangles with something in between (default: 16384)")
+      .add_option(
+          "--samples", arguments->most_samples,
+          "most rays for each pair of triangles with something in between (default: 32768 to 16777216, by how many "
+          "such pairs there are)")
       ->type_name("N")
       ->check(CLI::Range(256, 1 << 24).description(""));
   add_common_options(command, arguments->common);

@@ -35,7 +35,8 @@ std::filesystem::path sensors_output(const Arguments& arguments) {
 
 ExitCode exit_code(const Solved& solved) {
   if (solved.solution.stop == StopReason::interrupted) return kInterrupted;
-  return solved.solution.stop == StopReason::converged && meets_target(solved) ? kDone : kAccuracyNotReached;
+  const bool as_asked = solved.solution.stop == StopReason::converged && meets_target(solved) && keeps_laws(solved);
+  return as_asked ? kDone : kAccuracyNotReached;
 }
 
 void say_why(ExitCode code, const Solved& solved, Console& console) {
@@ -49,7 +50,7 @@ void say_why(ExitCode code, const Solved& solved, Console& console) {
   else if (solved.solution.stop == StopReason::iteration_limit)
     console.warn("the method stopped before it converged, at a residual of " + percent(solved.solution.residual) +
                  "; the result so far is written.");
-  else
+  else if (!meets_target(solved))
     console.warn("the target error of " + percent(*settings.target_error) + " was not reached" +
                  (solved.error ? ": it is " + error_line(*solved.error) : "") + "; the result is written.");
 }
@@ -164,6 +165,8 @@ void add_solve_command(CLI::App& program, Task& task) {
       ->type_name("N")
       ->check(CLI::Range(8, 4096))
       ->excludes("--no-error");
+  command.add_flag("--check", s.check,
+                   "check the result against the laws of radiosity, room by room; exit code 4 when one is broken");
   add_positive_option(command, "--time-limit", s.time_limit, "S", "stop solving after so many seconds");
   add_checked_word(command, "--memory-limit", s.memory_limit, problem_with_memory,
                    "coarser rather than more memory than this: 500MiB, 2GiB, or a number of MiB (default: none)")

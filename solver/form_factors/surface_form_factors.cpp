@@ -5,23 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "solver/form_factors/polygon_to_polygon.h"
-#include "solver/form_factors/sampled.h"
+#include "solver/form_factors/factors_of_group.h"
 #include "solver/form_factors/shaft.h"
-#include "solver/model/parallel.h"
-#include "solver/model/random_stream.h"
 
 namespace clerestory {
 namespace {
-
-/// Sums over the pairs of triangles of one pair of groups.
-struct PairSum {
-  double exchange = 0;    ///< sum A_p F_pq V_pq [m2]
-  double unoccluded = 0;  ///< sum A_p F_pq [m2]
-  double variance = 0;    ///< of exchange [m4]
-
-  void operator+=(const PairSum& b) { exchange += b.exchange, unoccluded += b.unoccluded, variance += b.variance; }
-};
 
 std::size_t planes_of_object(const PatchSet& patches, std::size_t i, std::vector<std::size_t>& first_of_plane) {
   const PatchId p{i};
@@ -74,69 +62,26 @@ SurfaceFactors surface_form_factors(const PatchSet& patches, const RayScene& ray
   const std::size_t n = patches.patch_count(), count = groups.name.size();
   const Blockers blockers(patches);
   SurfaceFactors result;
-
-  // One task a patch, with a row of sums over the groups it sends to; patches of a group are added up in order.
-  struct PatchRow {
-    std::vector<PairSum> to;
-    std::size_t unblocked = 0, sampled = 0;
-    unsigned long long rays = 0;
-  };
   std::vector<double> area(count, 0.0);
-  for (std::size_t i = 0; i < n; ++i) area[groups.group[i]] += patches.area[i];
+  std::vector<std::vector<std::uint32_t>> members(count);
+  for (std::size_t i = 0; i < n; ++i) {
+    area[groups.group[i]] += patches.area[i];
+    members[groups.group[i]].push_back(static_cast<std::uint32_t>(i));
+  }
+
   std::vector<PairSum> sums(count * count);
-
-  const auto patch_row = [&](std::size_t i) {
-    PatchRow row{std::vector<PairSum>(count)};
-    const auto p = patches.corner_positions(PatchId{i});
-    const Box box = Box::around(p);
-    std::vector<const Blocker*> in_shaft;
-    std::vector<const Screen*> screens;
-    for (std::size_t j = 0; j < n; ++j) {
-      if (i == j) continue;
-      const auto q = patches.corner_positions(PatchId{j});
-      PairSum pair;
-      pair.unoccluded = exchange_area(p, q);
-      if (pair.unoccluded == 0) continue;
-      const Box other = Box::around(q);
-      blockers.in_shaft(box, other, in_shaft);
-      const PairShaft shaft(p, patches.normal[i], q, patches.normal[j], blockers.touching());
-      const bool blocked = std::ranges::any_of(in_shaft, [&](const Blocker* b) { return shaft.reached_by(*b); });
-      if (!blocked) {
-        ++row.unblocked;
-        pair.exchange = pair.unoccluded;
-      } else {
-        blockers.screens_in_shaft(box, other, screens);
-        const bool hidden =
-            std::ranges::any_of(screens, [&](const Screen* s) { return s->hides(p, q, blockers.touching()); });
-        if (!hidden) {
-          ++row.sampled;
-          const SampledVisibility V = sample_visibility({p, patches.normal[i]}, {q, patches.normal[j]}, rays,
-                                                        stream_key(options.seed, i, j), options.samples);
-          pair.exchange = pair.unoccluded * V.value;
-          pair.variance = std::pow(pair.unoccluded * V.std_error, 2);
-          row.rays += static_cast<unsigned long long>(V.rays);
-        }
-      }
-      row.to[groups.group[j]] += pair;
-    }
-    return row;
-  };
-
-  // A slice of patches at a time: their rows would not fit in memory all at once when each patch is a group.
-  constexpr std::size_t kSlice = 64;
-  std::vector<PatchRow> slice(kSlice);
-  for (std::size_t first = 0; first < n && result.complete; first += kSlice) {
-    if (monitor.should_stop()) result.complete = false;
-    monitor.report("form factors", static_cast<double>(first) / static_cast<double>(n));
-    const std::size_t here = std::min(kSlice, n - first);
-    parallel_for(here, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) slice[k] = patch_row(first + k);
+  std::size_t done = 0;
+  for (std::size_t a = 0; a < count && result.complete; ++a) {
+    const std::span<PairSum> row = std::span(sums).subspan(a * count, count);
+    FactorsOfGroup from(patches, rays, blockers, groups, options);
+    result.complete = from.find(members[a], row, [&](double share) {
+      monitor.report("form factors", (static_cast<double>(done) + share * static_cast<double>(members[a].size())) /
+                                         static_cast<double>(n));
+      return !monitor.should_stop();
     });
-    for (std::size_t k = 0; k < here; ++k) {
-      for (std::size_t g = 0; g < count; ++g) sums[groups.group[first + k] * count + g] += slice[k].to[g];
-      result.pairs_unblocked += slice[k].unblocked, result.pairs_sampled += slice[k].sampled;
-      result.rays += slice[k].rays;
-    }
+    done += members[a].size();
+    result.pairs_unblocked += from.pairs_unblocked, result.pairs_sampled += from.pairs_sampled;
+    result.rays += from.rays_cast;
   }
 
   result.row_sum.assign(count, 0.0);

@@ -145,6 +145,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   const std::size_t n = patches.patch_count();
   Transport transport;
   transport.arrives.resize(n), transport.escapes.resize(n);
+  transport.bundle_rays = options.bundle_rays;
   const bool merges = B.size() == n;
   const SlitLines slits(light, options.seed);
   const Given given{{light, tree, direct, slits, options.sky_views, merges && options.uniform > 0},

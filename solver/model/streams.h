@@ -46,6 +46,10 @@ enum Stream : std::uint64_t {
   // Reference of a sweep over methods, by point and round.
   kReferencePoints = 0x75,
   kReferencePaths = 0x76,
+  // Laws: in the seed's place, and by room.
+  kLawClosure = 0x77,
+  kLawDirect = 0x78,
+  kLawRays = 0x79,
   // Search for openings, by gap: judging them, sifting them, and once more. The stream takes the seed's place: a model
   // has the same openings for every seed.
   kGapRays = 0x81,

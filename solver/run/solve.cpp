@@ -25,6 +25,7 @@
 #include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
+#include "solver/run/check_laws.h"
 #include "solver/run/level_in_time.h"
 #include "solver/run/memory_estimate.h"
 #include "solver/run/sound_result.h"
@@ -91,7 +92,7 @@ std::vector<GatherQuality> coarser_than(const SolveOptions& options, GatherQuali
 
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
                                  const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug,
-                                 const AroundSolve& around) {
+                                 const AroundSolve& around, KeptTransport* keep) {
   require_possible(problem, options);
   const Effort e = effort_of(options);
   const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeastPlan);
@@ -134,6 +135,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
   how.elements.most_elements = plan.most_elements;
   how.elements.seed = options.seed;
   how.elements.debug = debug;
+  how.elements.keep = keep;
   HierarchicalField field = hierarchical_field(problem, std::move(map), how, monitor);
   if (!field.went_on) return {{}, {}, {}, shown, rather};
   return {std::move(field.elements), std::move(field.lightmap), std::move(field.solution), shown};
@@ -179,7 +181,8 @@ bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const So
   return options.memory_limit == 0 || predicted_memory(whole(patches, map.position.size())) <= options.memory_limit;
 }
 
-Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor) {
+Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor,
+                          FormFactorMatrix* keep_matrix) {
   const Effort e = effort_of(options);
   require_possible(problem, options);
   const Illumination light(problem);
@@ -204,21 +207,22 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
     solution.log.push_back(std::to_string(gathered) + " patches met by few rays, gathered");
     return solution;
   }
-  const FormFactorMatrix F =
+  FormFactorMatrix F =
       form_factor_matrix(problem.patches, problem.rays, matrix_options(problem.patches, options), monitor);
   monitor.say_result();
   const auto gather = options.method == Method::jacobi ? jacobi : gauss_seidel;
   Solution solution = gather(problem.patches, F, direct.E, {}, monitor);
   count_luminaires(solution.energy, problem.patches, direct);
   solution.rays += direct.rays + F.rays;
+  if (keep_matrix) *keep_matrix = std::move(F);
   return solution;
 }
 
 namespace {
 
 SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, const SolveOptions& options,
-                                    const Monitor& monitor) {
-  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor), options.accuracy};
+                                    const Monitor& monitor, FormFactorMatrix* keep_matrix) {
+  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor, keep_matrix), options.accuracy};
   VertexLightmap& lightmap = solved.lightmap;
   Solution& solution = solved.solution;
   average_to_points(problem.patches, solution.E, lightmap);
@@ -238,10 +242,19 @@ SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, 
 
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
                     const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around) {
+  UsedTransport used;
+  KeptTransport* const keep_links = options.check_laws ? &used.links : nullptr;
+  FormFactorMatrix* const keep_matrix = options.check_laws ? &used.matrix : nullptr;
   SolvedPatches solved =
       options.method == Method::hierarchical
-          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug, around)
-          : solve_by_other_method(problem, std::move(map), options, monitor);
+          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug, around, keep_links)
+          : solve_by_other_method(problem, std::move(map), options, monitor, keep_matrix);
+  if (solved.rather) return solved;
+  if (options.check_laws) {
+    const PatchSet& elements = solved.elements.patch_count() > 0 ? solved.elements : problem.patches;
+    solved.laws = check_laws({elements, problem.rays, problem.lights}, problem, solved.lightmap, solved.solution, used,
+                             options, monitor);
+  }
   require_sound(solved.solution.E, "irradiance of the elements");
   require_sound(solved.solution.B, "radiosity of the elements");
   require_sound(solved.lightmap.E, "irradiance at the points");

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "solver/illumination/problem.h"
+#include "solver/methods/form_factor_matrix.h"
 #include "solver/model/hierarchy_debug.h"
+#include "solver/model/laws.h"
 #include "solver/model/method.h"
 #include "solver/model/monitor.h"
 #include "solver/model/point_irradiance.h"
@@ -25,6 +28,7 @@ struct SolveOptions {
   Oracle oracle = Oracle::error;  ///< of the hierarchical method
   std::uint64_t seed = 1;
   std::size_t memory_limit = 0;  ///< the peak of the process stays below by making the result coarser [bytes]; 0: none
+  bool check_laws = false;       ///< fill SolvedPatches::laws
   int tighten = 0;               ///< times that the effort was raised to reach a target error (accuracy.h)
 };
 
@@ -41,6 +45,7 @@ struct SolvedPatches {
   Accuracy shown =
       Accuracy::draft;  ///< level of the gathers at vertices: with a deadline finer than the elements', perhaps
   std::optional<Accuracy> rather{};  ///< SolveOptions::at_most; if so, all else is empty
+  std::vector<LawCheck> laws{};      ///< by check_laws.h; empty unless asked for
 };
 
 /// What a solve with a deadline must know of what comes before and after it.
@@ -65,7 +70,10 @@ SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_e
 
 /// The first half of that for any method but the hierarchical one, which makes elements of its own: radiosity and
 /// irradiance of every patch.
-Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor = {});
+///
+/// keep_matrix  null, or where a method that has a matrix leaves it.
+Solution solve_on_patches(const Problem& problem, const SolveOptions& options, const Monitor& monitor = {},
+                          FormFactorMatrix* keep_matrix = nullptr);
 
 /// Irradiance at each sensor point itself, by gather_point(), or by paths where these are the method. When the monitor
 /// stops it, rough values are looked up at the elements; where a second is not enough for all points, the answer is not

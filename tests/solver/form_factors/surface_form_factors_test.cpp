@@ -1,7 +1,12 @@
 #include "solver/form_factors/surface_form_factors.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include "solver/form_factors/point_to_polygon.h"
 #include "tests/support/room_with_blocks.h"
 
 namespace clerestory {
@@ -62,7 +67,7 @@ TEST(SurfaceFormFactors, AConcaveGroupSeesItself) {
 TEST(SurfaceFormFactors, ClosedRoomWithBlocksHasRowSumsOfOneAndReciprocity) {
   const PatchSet patches = test::RoomWithBlocks{.room_cells = {1, 1, 1}, .block_cells = 1}.build();
   const PatchGroups groups = group_patches(patches, GroupBy::patch);
-  const SurfaceFactors factors = surface_form_factors(patches, RayScene(patches), groups, {.samples = 4096});
+  const SurfaceFactors factors = surface_form_factors(patches, RayScene(patches), groups, {.most_samples = 4096});
   for (std::size_t g = 0; g < groups.name.size(); ++g) {
     double variance = 0;
     for (const SurfaceFactor& f : factors.rows)
@@ -70,6 +75,67 @@ TEST(SurfaceFormFactors, ClosedRoomWithBlocksHasRowSumsOfOneAndReciprocity) {
     EXPECT_NEAR(factors.row_sum[g], 1, 4 * std::sqrt(variance) + 1e-9) << "patch " << g;
   }
   EXPECT_GT(factors.pairs_sampled, 100u);
+}
+
+/// Unit floor and ceiling a metre apart, and half-way a plate with a square hole in its middle.
+PatchSet plate_with_hole(double width) {
+  const double low = 0.5 - width / 2, high = 0.5 + width / 2, z = 0.5;
+  PatchBuilder b;
+  b.surface("floor").rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  b.surface("ceiling").rectangle({0, 0, 1}, {0, 1, 0}, {1, 0, 0});
+  b.surface("plate")
+      .rectangle({-1, -1, z}, {3, 0, 0}, {0, low + 1, 0})
+      .rectangle({-1, high, z}, {3, 0, 0}, {0, low + 1, 0});
+  b.rectangle({-1, low, z}, {low + 1, 0, 0}, {0, width, 0}).rectangle({high, low, z}, {low + 1, 0, 0}, {0, width, 0});
+  return b.build();
+}
+/// What a floor point sees of the ceiling is the hole's shadow on it, Lambert's sum of that; mean over n x n points.
+double floor_to_ceiling_through_hole(double width, int n) {
+  const double low = 0.5 - width / 2, high = 0.5 + width / 2;
+  double sum = 0;
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) {
+      const double x = (a + 0.5) / n, y = (b + 0.5) / n;
+      const double x0 = std::max(0.0, 2 * low - x), x1 = std::min(1.0, 2 * high - x);
+      const double y0 = std::max(0.0, 2 * low - y), y1 = std::min(1.0, 2 * high - y);
+      if (x0 >= x1 || y0 >= y1) continue;
+      const std::array<Vec3, 4> seen{{{x0, y0, 1}, {x0, y1, 1}, {x1, y1, 1}, {x1, y0, 1}}};
+      sum += point_to_polygon({x, y, 0}, {0, 0, 1}, seen);
+    }
+  return sum / n / n;
+}
+
+TEST(SurfaceFormFactors, RaysGoOnUntilTheStandardErrorIsAFiveHundredthOfTheFactor) {
+  for (const double width : {0.16, 0.1}) {  // 6.6 and 2.7 % are visible
+    const double exact = floor_to_ceiling_through_hole(width, 512);
+    ASSERT_NEAR(exact / floor_to_ceiling_through_hole(width, 256), 1, 2e-4);
+    const PatchSet patches = plate_with_hole(width);
+    const PatchGroups groups = group_patches(patches, GroupBy::object);
+    double square = 0;
+    constexpr int kSeeds = 8;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      const SurfaceFactors factors =
+          surface_form_factors(patches, RayScene(patches), groups, {.seed = static_cast<std::uint64_t>(seed)});
+      const SurfaceFactor& up = factor(factors, groups, "floor", "ceiling");
+      EXPECT_TRUE(up.reached()) << up.std_error / up.F;
+      EXPECT_NEAR(up.F, exact, 4 * up.std_error) << width;
+      square += std::pow((up.F - exact) / up.std_error, 2) / kSeeds;
+    }
+    // What is said of the error is what it is: chi-square of 8 degrees of freedom is in this range but for 1 in 1,000.
+    EXPECT_GT(square, 0.1) << width;
+    EXPECT_LT(square, 3.3) << width;
+  }
+}
+
+TEST(SurfaceFormFactors, WhereRaysAreUsedUpTheStandardErrorSaysWhatWasReached) {
+  const PatchSet patches = plate_with_hole(0.1);
+  const PatchGroups groups = group_patches(patches, GroupBy::object);
+  const SurfaceFactors factors = surface_form_factors(patches, RayScene(patches), groups, {.most_samples = 2048});
+  const SurfaceFactor& up = factor(factors, groups, "floor", "ceiling");
+  EXPECT_FALSE(up.reached());
+  EXPECT_NEAR(up.F, floor_to_ceiling_through_hole(0.1, 512), 4 * up.std_error);
+  EXPECT_LE(factors.rays, 2 * 4 * (2048u + 17 * 256));  // both ways, four pairs of triangles: rays, and pilots of parts
+  EXPECT_TRUE(factor(factors, groups, "floor", "plate").reached());
 }
 
 TEST(GroupPatches, NamesSurfacesByTheirPlane) {

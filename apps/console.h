@@ -32,7 +32,7 @@ class Console : public Observer {
   /// The one message of a run that fails.
   void fail(const std::string& line);
   /// A step of the work is done: a line to standard error unless --quiet.
-  void step(const std::string& line);
+  void step(const std::string& line) override;
   /// For --verbose and the log.
   void note(const std::string& line) override;
   void progress(std::string_view stage, double done) override;

@@ -13,6 +13,8 @@ class Observer {
 
   /// A stage of the work, and the share of it that is done [0, 1].
   virtual void progress(std::string_view /*stage*/, double /*done*/) {}
+  /// A step of the work is done, and what comes next.
+  virtual void step(const std::string& /*line*/) {}
   /// What the run does, for those who want to know more.
   virtual void note(const std::string& /*line*/) {}
   /// Something that a user should look at: light, energy or error that cannot be trusted, input that was assumed.

@@ -1,5 +1,6 @@
 #include "pipeline/prepare.h"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "pipeline/wording.h"
 #include "solver/illumination/place_lights.h"
 #include "solver/model/error.h"
+#include "solver/run/accuracy.h"
 #include "solver/run/memory_estimate.h"
 #include "solver/spaces/rooms.h"
 
@@ -19,11 +21,17 @@ namespace {
 
 LitSides all_sides(const PatchSet& patches) { return {std::vector<bool>(2 * patches.triangle_count(), true), {}}; }
 
+/// That was asked for, shorter each time that the effort was raised.
+std::optional<double> longest_edge(const Settings& s) {
+  if (!s.max_element) return {};
+  return *s.max_element * std::pow(kTighterEdge, s.solve.tighten);
+}
+
 std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
                                    const Monitor& monitor, StageSeconds& seconds) {
   Lap lap;
   MeshedScene meshed = build_patches(scene,
-                                     {.max_element = settings.max_element,
+                                     {.max_element = longest_edge(settings),
                                       .detail = settings.detail,
                                       .target_triangles = target_triangles(settings.solve),
                                       .fit_triangles = fit_triangles},
@@ -87,7 +95,7 @@ std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& se
                                                 const Monitor& monitor, StageSeconds& seconds) {
   if (!settings.memory_limit) return with_points(prepare(scene, settings, monitor, seconds), scene, monitor, seconds);
   const std::size_t limit = *settings.memory_limit, faces = scene.polygons.face_count();
-  const double asked = settings.max_element.value_or(0), wanted = target_triangles(settings.solve);
+  const double asked = longest_edge(settings).value_or(0), wanted = target_triangles(settings.solve);
   std::size_t fit = triangles_that_fit(faces, limit);
   if (fit == 0) refuse_memory(scene, least_memory({faces, faces, faces, faces, faces}), limit);
   for (std::size_t last = std::numeric_limits<std::size_t>::max();; fit /= 2) {

@@ -6,9 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/target_rounds.h"
 #include "pipeline/wording.h"
 #include "solver/model/error.h"
-#include "solver/run/accuracy.h"
+#include "solver/run/memory_estimate.h"
 
 namespace clerestory {
 namespace {
@@ -57,19 +58,46 @@ Clock::time_point deadline(const Settings& s) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*s.time_limit));
 }
 
-/// Of the worst room and the worst set of sensors, for sure; what nobody knows counts as 100 %.
-double worst_error(const Solved& s) {
-  const auto of = [](const std::optional<MeasuredError>& error) {
-    if (!error) return 0.0;
-    const ErrorOfPart* worst = error->worst();
-    return std::max({error->upper(), worst ? worst->figures.upper() : 0.0, error->unknown().empty() ? 0.0 : 1.0});
-  };
-  return std::max(of(s.error), of(s.error_sensors));
+/// Upper end of the interval of an error, over the error, as finer rounds have it.
+constexpr double kConfidence = 1.2;
+
+using Largest = MeasuredError::Largest;
+/// Of the worst room and the worst set of sensors.
+double worst(const Solved& s, double Largest::*figure) {
+  return std::max(s.error ? s.error->largest().*figure : 0.0,
+                  s.error_sensors ? s.error_sensors->largest().*figure : 0.0);
 }
+double worst_error(const Solved& s) { return worst(s, &Largest::upper); }  // for sure
 
 /// Where a time limit may leave time for a coarser level only.
 bool may_be_too_much(const Settings& s) {
   return s.time_limit && s.solve.method == Method::hierarchical && s.solve.tighten == 0;
+}
+
+Settings of_round(Settings asked, std::size_t round) {
+  asked.solve.accuracy = kTargetRounds[round].accuracy, asked.solve.tighten = kTargetRounds[round].tighten;
+  return asked;
+}
+
+/// "draft", "fine, raised twice".
+std::string name_of(const TargetRound& round) {
+  constexpr const char* kTimes[] = {"", ", raised once", ", raised twice"};
+  return std::string(kAccuracyNames[static_cast<std::size_t>(round.accuracy)]) + kTimes[round.tighten];
+}
+
+/// What the next round is expected to reach and to cost.
+std::string expectation(const Solved& solved, std::size_t now, std::size_t next, double seconds) {
+  const TargetRound &then = kTargetRounds[now], &coming = kTargetRounds[next];
+  const double target = *solved.settings.target_error, error = worst_error(solved);
+  const double expected = kConfidence * worst(solved, &Largest::measured) * coming.error / then.error,
+               more = coming.elements / then.elements;
+  const auto times = [&](std::size_t n) { return static_cast<std::size_t>(more * static_cast<double>(n)); };
+  const std::size_t memory = predicted_memory({solved.repairs.input_triangles, times(solved.repairs.triangles),
+                                               times(solved.repairs.triangles), times(solved.patches.patch_count()),
+                                               times(solved.lightmap.position.size()), times(solved.solution.links)});
+  return "error up to " + percent(error) + " with " + name_of(then) + ", asked for " + percent(target) + ": " +
+         name_of(coming) + " is expected to reach " + (expected <= target ? "it" : percent(expected) + " only") +
+         ", in about " + duration(seconds * coming.time / then.time) + " and " + bytes(memory);
 }
 
 void say_coarser(Solution& solution, Accuracy level, Accuracy asked) {
@@ -78,6 +106,8 @@ void say_coarser(Solution& solution, Accuracy level, Accuracy asked) {
   if (solution.stopped_at.empty())
     solution.stopped_at = "accuracy " + name(level) + ", as " + name(asked) + " would have taken longer";
 }
+
+constexpr double kHelped = 0.9;      ///< of the error before: else finer rounds are of no use
 
 bool is_better(const Solved& a, const Solved& b) { return a.error && (!b.error || worst_error(a) <= worst_error(b)); }
 
@@ -99,38 +129,44 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
                         .deadline = deadline(asked),
                         .has_result = [&] { observer.has_result(); }};
   StageSeconds seconds;
-  Settings settings = asked;
-  const auto attempt = [&] {
+  auto round_start = Clock::now();
+  const auto attempt = [&](Settings settings, bool may_start_with_draft) {
     const Accuracy level = settings.solve.accuracy;
-    if (may_be_too_much(settings)) settings.solve.at_most = level, settings.solve.accuracy = Accuracy::draft;
+    if (may_start_with_draft) settings.solve.at_most = level, settings.solve.accuracy = Accuracy::draft;
     std::optional<Solved> solved = round(settings, monitor, seconds);
     if (solved && solved->rather) {
       settings.solve.at_most = settings.solve.accuracy = *solved->rather;
       solved = round(settings, monitor, seconds);
     }
-    if (!solved) return solved;
-    solved->settings = settings;
+    if (!solved) {
+      solved.emplace();
+      solved->solution.stop = StopReason::interrupted;
+    }
     if (settings.solve.accuracy < level) say_coarser(solved->solution, settings.solve.accuracy, level);
-    return solved;
+    solved->settings = settings;
+    return std::move(*solved);
   };
-  Solved best;
-  if (auto first = attempt()) {
-    best = std::move(*first);
-  } else {
-    best.solution.stop = StopReason::interrupted;
-    best.settings = settings;
-  }
-  Settings finer = settings;
-  for (int k = 1; k < kMostRounds && !best.empty() && !meets_target(best) && !monitor.should_stop(); ++k) {
-    finer.max_element = finer.max_element.value_or(best.repairs.max_element) * kTighterEdge;
-    ++finer.solve.tighten;
-    observer.note("error up to " + percent(best.error ? worst_error(best) : 1) + ", asked for " +
-                  percent(*finer.target_error) + ": again with elements of " + rounded(*finer.max_element) +
-                  " m and twice the rays");
+  const bool has_target = asked.target_error.has_value();
+  Solved best = attempt(has_target ? of_round(asked, 0) : asked, !has_target && may_be_too_much(asked));
+  std::size_t now = 0;
+  while (!best.empty() && !meets_target(best) && !monitor.should_stop() && now + 1 < kTargetRounds.size()) {
+    const double error = worst_error(best);
+    const std::size_t next = round_for(*asked.target_error / kConfidence, now, worst(best, &Largest::measured));
+    const double took = std::chrono::duration<double>(Clock::now() - round_start).count();
+    observer.step(expectation(best, now, next, took));
     // What is solved already must not be lost to a try that needs too much.
     try {
-      settings = finer;
-      if (auto next = attempt(); next && is_better(*next, best)) best = std::move(*next);
+      round_start = Clock::now();
+      Solved finer = attempt(of_round(asked, next), false);
+      now = next;
+      if (finer.empty() || !finer.error) break;
+      const bool helped = worst_error(finer) < kHelped * error;
+      if (is_better(finer, best)) best = std::move(finer);
+      if (!helped && !meets_target(best) && now + 1 < kTargetRounds.size()) {
+        observer.step("error up to " + percent(worst_error(finer)) +
+                      ": finer elements and more rays hardly help, so this is the last round");
+        break;
+      }
     } catch (const InputError& e) {
       observer.warn(std::string("the target error would need more than this: ") + e.what());
       break;

@@ -15,8 +15,10 @@ namespace clerestory {
 using SolveRound =
     std::function<std::optional<Solved>(Settings& settings, const Monitor& monitor, StageSeconds& seconds)>;
 
-/// Calls round() once, or up to kMostRounds times where there is a target error, each time with elements of half the
-/// area and twice the rays. returns the result of least error, with the times of all rounds.
+/// Calls round() once, or more than once: with a time limit for a draft, which may say that there is time for more
+/// (Solved::rather); with a target error by the rounds of target_rounds.h, from a draft on, until it is met, or finer
+/// ones do not help, each time saying what the next is expected to cost. returns the result of least error, with the
+/// times of all rounds.
 Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRound& round);
 
 }  // namespace clerestory

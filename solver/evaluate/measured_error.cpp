@@ -44,6 +44,18 @@ const ErrorOfPart* MeasuredError::worst() const {
   return worst;
 }
 
+MeasuredError::Largest MeasuredError::largest() const {
+  if (!unknown().empty()) return {1, 1, 1};
+  Largest found{lower(), rms_relative, upper()};
+  for (const ErrorOfPart& part : parts) {
+    if (!counts(part) || part.figures.samples == 0) continue;
+    found.lower = std::max(found.lower, part.figures.lower());
+    found.measured = std::max(found.measured, part.figures.rms_relative);
+    found.upper = std::max(found.upper, part.figures.upper());
+  }
+  return found;
+}
+
 std::vector<const ErrorOfPart*> MeasuredError::unknown() const {
   std::vector<const ErrorOfPart*> found;
   for (const ErrorOfPart& part : parts)

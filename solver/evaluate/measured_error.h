@@ -32,6 +32,12 @@ struct MeasuredError : ErrorFigures {
   bool counts(const ErrorOfPart& part) const;
   /// That of the largest error; none where none is known.
   const ErrorOfPart* worst() const;
+  /// Of all points together and of each part that counts, the largest error: as measured, and the ends of its 95 %
+  /// interval. What nobody knows counts as 100 %.
+  struct Largest {
+    double lower, measured, upper;
+  };
+  Largest largest() const;
   /// Parts with light of which no path knows: those that count, and smaller ones of more than a lux.
   std::vector<const ErrorOfPart*> unknown() const;
 };

@@ -44,7 +44,5 @@ Effort effort(Accuracy accuracy, int tighten = 0);
 
 /// A round that tightens has edges so much shorter: elements of half the area.
 inline constexpr double kTighterEdge = 0.70710678118654752;
-/// Rounds that a target error may take; the last has 16 times the elements of the first.
-inline constexpr int kMostRounds = 5;
 
 }  // namespace clerestory

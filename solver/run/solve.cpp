@@ -173,7 +173,7 @@ constexpr std::size_t kQuickSensors = 2'000;
 
 double target_triangles(const SolveOptions& options) {
   const Effort e = effort(options.accuracy);
-  return options.method == Method::hierarchical ? e.triangles_to_halve : e.triangles;
+  return std::ldexp(options.method == Method::hierarchical ? e.triangles_to_halve : e.triangles, options.tighten);
 }
 
 bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options) {

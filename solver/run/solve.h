@@ -32,7 +32,7 @@ struct SolveOptions {
   int tighten = 0;               ///< times that the effort was raised to reach a target error (accuracy.h)
 };
 
-/// Triangles to aim for when no longest edge is given.
+/// Triangles to aim for when no longest edge is given; twice as many each time that the effort was raised.
 double target_triangles(const SolveOptions& options);
 
 /// Whether a limit of memory leaves room for a solve on these patches, matrices aside.

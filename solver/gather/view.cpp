@@ -1,26 +1,32 @@
 #include "solver/gather/view.h"
 
+#include "solver/model/streams.h"
+#include "solver/model/units.h"
 #include "solver/sampling/packed_direction.h"
 #include "solver/sampling/two_estimators.h"
+#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 
 void View::look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
-                std::span<Spectrum> values, std::span<RowEntry> found) const {
+                std::span<Spectrum> values, FoundByRays* found) const {
   std::array<Ray, 16> rays;
   std::array<Hit, 16> hits;
+  if (found) found->clear();
+  std::array<Echo, 16> echoes;
   for (std::size_t k = 0; k < directions.size(); ++k) rays[k] = {p_, directions[k]};
   const Problem& problem = light_.problem;
-  problem.rays.first_hits(problem.patches, std::span(rays).first(directions.size()), hits);
+  const bool has_glass = problem.rays.has_glass();
+  problem.rays.first_hits(problem.patches, std::span(rays).first(directions.size()), hits,
+                          std::span(echoes).first(has_glass ? directions.size() : 0));
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Hit& hit = hits[k];
     values[k] = Spectrum(0.0);
-    if (!found.empty()) found[k] = {};
     if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
     if (hit.escaped()) {
       const Vec3& direction = hit.direction(rays[k]);
       values[k] = light_.sky(direction) * std::numbers::pi * hit.transmittance;
-      if (!found.empty()) found[k] = RowEntry::of_sky(pack_direction(direction), std::numbers::pi * hit.transmittance);
+      if (found) found->add(k, RowEntry::of_sky(pack_direction(direction), std::numbers::pi * hit.transmittance));
     } else if (hit.patch.valid()) {
       Spectrum back = light_.sampler.glow()[hit.patch];
       double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
@@ -30,9 +36,33 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
         back *= share;
       }
       values[k] = back * hit.transmittance;
-      if (!found.empty()) found[k] = RowEntry::of_patch(hit.patch, share * hit.transmittance);
+      if (found) found->add(k, RowEntry::of_patch(hit.patch, share * hit.transmittance));
     }
+    if (has_glass && !echoes[k].is_none()) values[k] += turned_back(echoes[k], rays[k], luminous_mean(values[k]), k, found);
   }
+}
+
+Spectrum View::turned_back(const Echo& echo, const Ray& ray, double goes_on, std::size_t k, FoundByRays* found) const {
+  // By judgement: the noise of a ray that is sent once in eight times is that of eight times what is usual around it.
+  constexpr double kLeastChance = 1.0 / 8, kMuch = 8;
+  const double usual = luminous_mean(echo.share) * light_.bright_areas.ambient;
+  const double chance = goes_on > 0 ? std::clamp(kMuch * usual / goes_on, kLeastChance, 1.0) : 1;
+  RandomStream random(key_of(ray, kEchoes));
+  if (!(random.uniform() < chance)) return Spectrum(0.0);
+  const Problem& problem = light_.problem;
+  Spectrum sum(0.0);
+  follow_echo(problem.rays, problem.patches, echo, random, [&](const Hit& hit) {
+    const Spectrum weight = hit.transmittance / chance;
+    if (hit.escaped()) {
+      const Vec3& direction = hit.direction(ray);
+      sum += light_.sky(direction) * std::numbers::pi * weight;
+      if (found) found->add(k, RowEntry::of_sky(pack_direction(direction), std::numbers::pi * weight));
+    } else if (hit.patch.valid()) {
+      sum += light_.sampler.glow()[hit.patch] * weight;
+      if (found) found->add(k, RowEntry::of_patch(hit.patch, weight));
+    }
+  });
+  return sum;
 }
 
 double View::slit_gain(std::uint32_t number, const Vec3& direction, double distance) const {
@@ -50,7 +80,7 @@ std::uint32_t View::owner_of(const Vec3& direction, double distance, PatchId pat
 }
 
 void AreaView::look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,
-                    std::span<PolygonView::Sight> sights, std::span<RowEntry> found) const {
+                    std::span<PolygonView::Sight> sights, FoundByRays* found) const {
   std::array<Vec3, 16> directions;
   std::array<double, 16> density{};  // counts for rays that belong to nobody only
   for (std::size_t k = 0; k < points.size(); ++k) {

@@ -35,13 +35,14 @@ TEST(Mirror, TurnsARayAndTakesItsShareAtEachReflection) {
   EXPECT_EQ(patches.patch_count(), 2u) << "mirrors and glass are no receivers";
   const RayScene rays(patches);
   ASSERT_TRUE(rays.has_mirrors());
-  EXPECT_EQ(rays.mirrors().size(), 2u);
+  ASSERT_EQ(rays.mirrors().size(), 3u);
+  EXPECT_TRUE(!rays.mirrors()[0].is_glass && !rays.mirrors()[1].is_glass && rays.mirrors()[2].is_glass);
   // From z = 0.75 upwards by 45 degrees: mirrors at x = 0.25, 1.25, 2.25, 3.25, glass between them, out at x = 4.25.
   const Ray ray{{0, 0.1, 0.75}, normalized(Vec3{1, 0, 1})};
   const std::array<Ray, 2> both{ray, ray};
   std::array<Hit, 2> hits;
   rays.first_hits(patches, both, hits);
-  const double glass = GlassTable(Spectrum(0.65)).at(std::sqrt(0.5))[0];
+  const double glass = GlassTable(Spectrum(0.65)).transmittance(std::sqrt(0.5))[0];
   for (const Hit& hit : {rays.first_hit(patches, ray), hits[0], hits[1]}) {
     EXPECT_TRUE(hit.escaped());
     EXPECT_TRUE(hit.reflected);

@@ -188,9 +188,10 @@ std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& 
   warn_about_luminaires(problem, observer);
   constexpr double kMuch = 0.01;
   if (const double lost = problem.lights.lost_in_mirrors; lost > kMuch)
-    observer.warn(text(scene.file, ": mirrors and glass turn ", percent(lost),
-                       " of the light of lamps and sun on ways that are not followed (more than 64 planes, more than 15 "
-                       "one after another, or each with very little); it is missing where it arrives."));
+    observer.warn(
+        text(scene.file, ": mirrors and glass turn ", percent(lost),
+             " of the light of lamps and sun on ways that are not followed (more than 64 planes, more than 15 "
+             "one after another, or each with very little); it is missing where it arrives."));
   return warn_about_sensors(problem, scene.file, sensors, observer);
 }
 

@@ -38,7 +38,8 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
       values[k] = back * hit.transmittance;
       if (found) found->add(k, RowEntry::of_patch(hit.patch, share * hit.transmittance));
     }
-    if (has_glass && !echoes[k].is_none()) values[k] += turned_back(echoes[k], rays[k], luminous_mean(values[k]), k, found);
+    if (has_glass && !echoes[k].is_none())
+      values[k] += turned_back(echoes[k], rays[k], luminous_mean(values[k]), k, found);
   }
 }
 

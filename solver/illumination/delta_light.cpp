@@ -280,10 +280,8 @@ Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, std::uint32_t
   if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
   return patch.mean([&](const Vec3& p, double u, double v, const auto&) -> ShadowTry {
     const Vec3 d = direction_to_sun(sun, u, v);
-    return {{p, p + d * far_away, false},
-            sun.normal_irradiance * std::max(0.0, dot(patch.normal(), d)),
-            number,
-            sun.way};
+    return {
+        {p, p + d * far_away, false}, sun.normal_irradiance * std::max(0.0, dot(patch.normal(), d)), number, sun.way};
   });
 }
 

@@ -23,8 +23,8 @@ namespace {
 // By judgement, as shares of a light's flux: what a way over one pane must turn to be worth an image, and what one over
 // several mirrors or panes must.
 constexpr double kWorthAPane = 2e-4, kWorthMore = 1e-3;
-constexpr std::size_t kMostImages = 64;       // of a light
-constexpr std::size_t kMostOfAll = 1 << 12;   // of all luminaires
+constexpr std::size_t kMostImages = 64;      // of a light
+constexpr std::size_t kMostOfAll = 1 << 12;  // of all luminaires
 constexpr std::size_t kRaysOfAll = 1 << 16, kFewestRays = 256, kMostRays = 1 << 14;
 
 /// What takes a way.
@@ -107,7 +107,8 @@ struct Images {
   }
 };
 
-PlacedLuminaire image_of(PlacedLuminaire luminaire, const Images::Image& image, const std::vector<MirrorPlane>& planes) {
+PlacedLuminaire image_of(PlacedLuminaire luminaire, const Images::Image& image,
+                         const std::vector<MirrorPlane>& planes) {
   luminaire.way = image.way, luminaire.share = image.share;
   for (std::size_t k = 0; k < image.way.count; ++k) {
     const MirrorPlane& mirror = planes[image.way.plane[k]];
@@ -155,8 +156,7 @@ void add_luminaires(Lights& lights, const RayScene& rays, double& flux, double& 
   for (std::size_t k = 0; k < count; ++k) {
     flux += luminous_mean(power(lights.luminaires[k]));
     lost += found[k].lost;
-    for (std::size_t i = 0; i < found[k].images.size(); ++i)
-      all.push_back({-found[k].images[i].turned, {k, i}});
+    for (std::size_t i = 0; i < found[k].images.size(); ++i) all.push_back({-found[k].images[i].turned, {k, i}});
   }
   std::ranges::sort(all);
   const std::size_t kept = std::min(all.size(), std::max(kMostOfAll, 2 * count));
@@ -185,8 +185,7 @@ std::vector<Turning> what_turns(const PatchSet& patches, const RayScene& rays) {
     const auto& c = patches.corners[t];
     const Vec3& a = patches.vertices[c[0]];
     Turning& to = planes[plane];
-    to.area_up_to.push_back(to.area() +
-                            length(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a)) / 2);
+    to.area_up_to.push_back(to.area() + length(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a)) / 2);
     to.triangles.push_back(TriangleId{t});
   }
   return planes;
@@ -211,7 +210,8 @@ Images images_of(const PlacedSun& sun, const PatchSet& patches, const RayScene& 
       const auto at = std::ranges::upper_bound(turning.area_up_to, u[0] * turning.area());
       const auto& c = patches.corners[turning.triangles[std::min(
           static_cast<std::size_t>(at - turning.area_up_to.begin()), turning.triangles.size() - 1)]];
-      const Vec3 x = point_on_triangle({patches.vertices[c[0]], patches.vertices[c[1]], patches.vertices[c[2]]}, u[1], u[2]);
+      const Vec3 x =
+          point_on_triangle({patches.vertices[c[0]], patches.vertices[c[1]], patches.vertices[c[2]]}, u[1], u[2]);
       const Vec3 from = rays.off_surface(x, up);
       const double passes = luminous_mean(rays.transmittance(from, from + sun.direction * (4 * rays.diameter())));
       if (!(passes > 0)) continue;
@@ -220,8 +220,7 @@ Images images_of(const PlacedSun& sun, const PatchSet& patches, const RayScene& 
       if (turns.empty() || turns.front().plane != m) continue;
       walk.note(turns.front(), flux * passes, {});
       RandomStream random(stream_key(key, m), k);
-      walk.follow(turns.front().ray, flux * passes * luminous_mean(turns.front().share),
-                  MirrorWay{}.over(m), random);
+      walk.follow(turns.front().ray, flux * passes * luminous_mean(turns.front().share), MirrorWay{}.over(m), random);
     }
   }
   double turned = 0;

@@ -131,12 +131,8 @@ LightSample LightSampler::on_patch(const LightTree::Receiver& at, double pick, d
   const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
   CLERESTORY_ASSERT(cos_q, >, 0);
   const double weight = kernel * area / probability;
-  return {problem_.rays.off_surface(point, normal),
-          glow_[q] * weight,
-          probability * r2 / (cos_q * area),
-          q,
-          {},
-          weight};
+  return {
+      problem_.rays.off_surface(point, normal), glow_[q] * weight, probability * r2 / (cos_q * area), q, {}, weight};
 }
 
 LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v,
@@ -146,8 +142,7 @@ LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick
   const PlacedLuminaire& luminaire = problem_.lights.luminaires[choice.light];
   const Vec3 q = light_point(luminaire, p, u, v);
   const double probability = share * choice.probability;
-  return {
-      shadow_segment(luminaire, q, p).to, open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.way};
+  return {shadow_segment(luminaire, q, p).to, open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.way};
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
@@ -210,8 +205,7 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffo
     const PlacedLuminaire& luminaire = problem_.lights.luminaires[number];
     const int count = std::min(effort.opening_rays, opening_rays(luminaire, p));
     if (count == 1) {
-      look(shadow_segment(luminaire, luminaire.position, p), open_irradiance(luminaire, p, n), number,
-           luminaire.way);
+      look(shadow_segment(luminaire, luminaire.position, p), open_irradiance(luminaire, p, n), number, luminaire.way);
       continue;
     }
     for (int k = 0; k < count; ++k) {

@@ -70,7 +70,8 @@ std::vector<SharpLight> sharp_lights(const Problem& problem, std::size_t most) {
   for (const PlacedSun& sun : problem.lights.suns) lights.emplace_back(problem, sun);
   std::vector<std::pair<double, std::uint32_t>> by_power;
   for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
-    by_power.emplace_back(-luminaire.share * luminous_mean(power(luminaire)), static_cast<std::uint32_t>(by_power.size()));
+    by_power.emplace_back(-luminaire.share * luminous_mean(power(luminaire)),
+                          static_cast<std::uint32_t>(by_power.size()));
   if (by_power.size() > most) {
     std::sort(by_power.begin(), by_power.end());
     by_power.resize(most);

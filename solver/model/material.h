@@ -9,9 +9,9 @@
 
 namespace clerestory {
 
-/// diffuse: reflects only. glass: passes light straight on and reflects some as a plane mirror does. diffuser: reflects, and
-/// passes light scattered to its other side, the same from both. mirror: sends light on as a plane mirror does, from
-/// both sides.
+/// diffuse: reflects only. glass: passes light straight on and reflects some as a plane mirror does. diffuser:
+/// reflects, and passes light scattered to its other side, the same from both. mirror: sends light on as a plane mirror
+/// does, from both sides.
 enum class MaterialKind { diffuse, glass, diffuser, mirror };
 /// In the order of the enumerators.
 inline constexpr std::string_view kMaterialKindNames[] = {"diffuse", "glass", "diffuser", "mirror"};

@@ -44,8 +44,7 @@ GlassTable::GlassTable(const Spectrum& transmittance) : value_(kSteps + 1) {
   for (int c = 0; c < kMaxChannels; ++c) sheet[static_cast<std::size_t>(c)] = fit_glass_sheet(transmittance[c]);
   for (std::size_t i = 0; i < value_.size(); ++i)
     for (int c = 0; c < kMaxChannels; ++c) {
-      const SheetShares shares =
-          sheet_shares(sheet[static_cast<std::size_t>(c)], static_cast<double>(i) / kSteps);
+      const SheetShares shares = sheet_shares(sheet[static_cast<std::size_t>(c)], static_cast<double>(i) / kSteps);
       value_[i].transmittance[c] = shares.transmittance;
       value_[i].reflectance[c] = shares.reflectance;
     }

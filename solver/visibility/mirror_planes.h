@@ -11,12 +11,12 @@ namespace clerestory {
 
 /// A plane with mirrors or panes of glass in it.
 struct MirrorPlane {
-  Vec3 normal;           ///< unit
-  double offset = 0;     ///< dot(normal, x) = offset in the plane [m]
+  Vec3 normal;        ///< unit
+  double offset = 0;  ///< dot(normal, x) = offset in the plane [m]
   bool is_glass = false;
 
   // A rectangle in the plane around all that turns light there.
-  Vec3 u, v;                                                 ///< unit, along its sides
+  Vec3 u, v;                                                      ///< unit, along its sides
   std::array<double, 2> low{1e300, 1e300}, high{-1e300, -1e300};  ///< along u and v [m]
 
   double height(const Vec3& x) const { return dot(normal, x) - offset; }

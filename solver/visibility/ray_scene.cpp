@@ -26,9 +26,9 @@ namespace {
 constexpr int kMostReflections = 64;     // of one ray; what is left is lost
 constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of lights; and of glass
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kLift = 5e-7;       // of the diameter: a few units in the last place at the rim of the scene
+constexpr double kLift = 5e-7;          // of the diameter: a few units in the last place at the rim of the scene
 constexpr double kPlaceInPlane = 2e-6;  // of the diameter: how far from its plane a mirror is looked for
-constexpr double kFineLift = 1e-12;  // of the diameter: far above double's rounding, far below the coordinates' grid
+constexpr double kFineLift = 1e-12;     // of the diameter: far above double's rounding, far below the coordinates' grid
 
 /// One Embree scene over some triangles of the PatchSet; primitive k is triangle of_primitive[k].
 struct Surfaces {
@@ -226,7 +226,8 @@ struct RayScene::Impl {
     for (const std::uint32_t t : glass.of_primitive) {
       const TriangleId triangle{t};
       Vec3 n = unit_normal(triangle);
-      const double area = length(cross(corner(triangle, 1) - corner(triangle, 0), corner(triangle, 2) - corner(triangle, 0))) / 2;
+      const double area =
+          length(cross(corner(triangle, 1) - corner(triangle, 0), corner(triangle, 2) - corner(triangle, 0))) / 2;
       if (!(length(n) > 0.5)) continue;
       if (n.x < -1e-5 || (n.x < 1e-5 && (n.y < -1e-5 || (n.y < 1e-5 && n.z < 0)))) n = -n;
       const double offset = dot(n, corner(triangle, 0));
@@ -277,7 +278,8 @@ struct RayScene::Impl {
       const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
       hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{r.hit.u}, double{r.hit.v});
     }
-    if (!glass.of_primitive.empty()) hit.transmittance = through_glass(ray.origin, ray.direction, hit.distance, false, panes);
+    if (!glass.of_primitive.empty())
+      hit.transmittance = through_glass(ray.origin, ray.direction, hit.distance, false, panes);
     return hit;
   }
 
@@ -377,7 +379,8 @@ struct RayScene::Impl {
     return share;
   }
 
-  /// The ray that a pane or mirror turns: it starts in the very plane, lifted off it; a ray in float hits it only nearly.
+  /// The ray that a pane or mirror turns: it starts in the very plane, lifted off it; a ray in float hits it only
+  /// nearly.
   Ray turned(const Vec3& origin, const Vec3& direction, double distance, const Vec3& normal, const Vec3& in_plane,
              double lift_share) const {
     const double along = dot(normal, direction);
@@ -641,13 +644,13 @@ std::vector<Turn> RayScene::turns(const Ray& ray) const {
                          lift_share_);
   };
   const Impl::Surface end = impl_->first_surface(ray);
-  impl_->walk_glass(ray.origin, ray.direction, end.distance, is_tight(ray.origin),
-                    [&](double distance, TriangleId pane) {
-                      const GlassTable& kind = impl_->glass_of(pane);
-                      const double cosine = dot(impl_->unit_normal(pane), ray.direction);
-                      found.push_back({impl_->glass_plane[pane], share * kind.reflectance(cosine), turned(distance, pane)});
-                      share *= kind.transmittance(cosine);
-                    });
+  impl_->walk_glass(
+      ray.origin, ray.direction, end.distance, is_tight(ray.origin), [&](double distance, TriangleId pane) {
+        const GlassTable& kind = impl_->glass_of(pane);
+        const double cosine = dot(impl_->unit_normal(pane), ray.direction);
+        found.push_back({impl_->glass_plane[pane], share * kind.reflectance(cosine), turned(distance, pane)});
+        share *= kind.transmittance(cosine);
+      });
   if (const Impl::Mirror* mirror = has_mirrors() ? impl_->mirror_at(end.triangle) : nullptr)
     found.push_back({mirror->plane, share * mirror->reflectance, turned(end.distance, end.triangle)});
   return found;

@@ -43,8 +43,8 @@ struct Hit {
   Vec3 position(const Ray& ray) const { return (reflected ? leg.origin : ray.origin) + direction(ray) * distance; }
 };
 
-/// What panes of glass turn back of a ray that goes on through them, by one of these panes, chosen at random where there
-/// are several.
+/// What panes of glass turn back of a ray that goes on through them, by one of these panes, chosen at random where
+/// there are several.
 struct Echo {
   Spectrum share{0.0};  ///< of the light that comes along it in what the ray brings; over the chance of the choice
   Ray ray;              ///< from the pane

@@ -1,6 +1,6 @@
 #pragma once
-// Light followed from where it starts to where it ends, through a scene of rectangles: a tracer that shares nothing with
-// the solver but its vectors. Slow and simple: it judges.
+// Light followed from where it starts to where it ends, through a scene of rectangles: a tracer that shares nothing
+// with the solver but its vectors. Slow and simple: it judges.
 
 #include <array>
 #include <cmath>

@@ -54,7 +54,8 @@ TEST(GlassSheet, TheTableIsWithinItsPrecision) {
     const GlassTable table(Spectrum{T});
     for (int k = 0; k <= 100'000; ++k) {
       const double c = k * 1e-5;
-      ASSERT_NEAR(table.transmittance(c)[0], sheet_shares(fit_glass_sheet(T), c).transmittance, 1e-4) << T << " at cosine " << c;
+      ASSERT_NEAR(table.transmittance(c)[0], sheet_shares(fit_glass_sheet(T), c).transmittance, 1e-4)
+          << T << " at cosine " << c;
     }
   }
 }

@@ -156,6 +156,34 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
   return sum / count;
 }
 
+/// What mirrors and panes show of bright patches: by shadow rays to their images.
+Spectrum bright_patches_in_mirrors(const Illumination& light, const Vec3& p, const Frame& frame,
+                                   const GatherPattern& pattern, const GatherPlan& plan, const View& view,
+                                   LightRow* row) {
+  const RayScene& rays = light.problem.rays;
+  const RayBudget& budget = pattern.quality().bundle;
+  Spectrum sum(0.0);
+  for (std::size_t m = 0; m < plan.mirrors.size(); ++m) {
+    const MirrorPlane& mirror = rays.mirrors()[plan.mirrors[m]];
+    const MirrorWay way = MirrorWay{}.over(plan.mirrors[m]);
+    for (int k = 0; k < plan.rays_in_mirror; ++k) {
+      const auto& u = pattern.bright_choices()[static_cast<std::size_t>(k)];
+      const LightSample s = light.sampler.sample(view.in_mirrors()[m], u[0], u[1], u[2], true);
+      if (!(s.density > 0)) continue;
+      const Vec3 image = mirror.image_of(s.end), d = normalized(image - p);
+      const Spectrum passes = rays.transmittance_by_mirrors(p, image, way);
+      if (passes.is_black() || view.owner_of(d) != kNobody) continue;
+      const std::size_t share = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
+      const double bundle = static_cast<double>(share) * budget.strata() * dot(frame.n, d) / kPi;
+      const Spectrum weight =
+          passes * (balance_heuristic(plan.rays_in_mirror * s.density, bundle) / plan.rays_in_mirror);
+      sum += s.irradiance * weight;
+      if (row) row->push_back(RowEntry::of_patch(s.patch, s.weight * weight));
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
@@ -184,6 +212,10 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
   if (to_bright_patches > 0) {
     at.E += bright_patches(light, p, frame, pattern, plan, view, row);
     rays += static_cast<unsigned>(to_bright_patches);
+  }
+  if (!plan.mirrors.empty()) {
+    at.E += bright_patches_in_mirrors(light, p, frame, pattern, plan, view, row);
+    rays += 2 * static_cast<unsigned long long>(plan.rays_in_mirror) * plan.mirrors.size();
   }
   // Where it is all but dark, what differs from a plan's mean may leave less than nothing.
   at.E = {std::max(0.0, at.E[0]), std::max(0.0, at.E[1]), std::max(0.0, at.E[2])};

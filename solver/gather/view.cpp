@@ -31,19 +31,36 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
       Spectrum back = light_.sampler.glow()[hit.patch];
       double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
       back *= share;
-      if (owner == kNobody && bright_rays_ > 0) {
-        share = balance_heuristic(density[k], bright_rays_ * light_.sampler.density(hit, at_, directions[k], true));
+      if (owner == kNobody) {
+        share = share_of_bundle(hit, rays[k], density[k]);
         back *= share;
       }
       values[k] = back * hit.transmittance;
       if (found) found->add(k, RowEntry::of_patch(hit.patch, share * hit.transmittance));
     }
     if (has_glass && !echoes[k].is_none())
-      values[k] += turned_back(echoes[k], rays[k], luminous_mean(values[k]), k, found);
+      values[k] +=
+          turned_back(echoes[k], rays[k], owner == kNobody ? density[k] : 0, luminous_mean(values[k]), k, found);
   }
 }
 
-Spectrum View::turned_back(const Echo& echo, const Ray& ray, double goes_on, std::size_t k, FoundByRays* found) const {
+double View::share_of_bundle(const Hit& hit, const Ray& ray, double density) const {
+  if (!hit.reflected)
+    return bright_rays_ > 0
+               ? balance_heuristic(density, bright_rays_ * light_.sampler.density(hit, at_, ray.direction, true))
+               : 1;
+  if (in_mirrors_.empty() || hit.plane == kNoPlane || !light_.sampler.is_bright(hit.patch)) return 1;
+  const auto m = std::ranges::find(plan_.mirrors, hit.plane);
+  if (m == plan_.mirrors.end()) return 1;
+  const double distance = length(hit.leg.origin - p_) + hit.distance;
+  const double cosine = -dot(light_.problem.patches.normal[hit.patch], hit.leg.direction);
+  const LightTree::Receiver& behind = in_mirrors_[static_cast<std::size_t>(m - plan_.mirrors.begin())];
+  return balance_heuristic(density,
+                           plan_.rays_in_mirror * light_.sampler.density(hit.patch, behind, distance, cosine, true));
+}
+
+Spectrum View::turned_back(const Echo& echo, const Ray& ray, double density, double goes_on, std::size_t k,
+                           FoundByRays* found) const {
   // By judgement: the noise of a ray that is sent once in eight times is that of eight times what is usual around it.
   constexpr double kLeastChance = 1.0 / 8, kMuch = 8;
   const double usual = luminous_mean(echo.share) * light_.bright_areas.ambient;
@@ -59,8 +76,9 @@ Spectrum View::turned_back(const Echo& echo, const Ray& ray, double goes_on, std
       sum += light_.sky(direction) * std::numbers::pi * weight;
       if (found) found->add(k, RowEntry::of_sky(pack_direction(direction), std::numbers::pi * weight));
     } else if (hit.patch.valid()) {
-      sum += light_.sampler.glow()[hit.patch] * weight;
-      if (found) found->add(k, RowEntry::of_patch(hit.patch, weight));
+      const double share = density > 0 ? share_of_bundle(hit, ray, density) : 1;
+      sum += light_.sampler.glow()[hit.patch] * (share * weight);
+      if (found) found->add(k, RowEntry::of_patch(hit.patch, share * weight));
     }
   });
   return sum;
@@ -78,6 +96,12 @@ std::uint32_t View::owner_of(const Vec3& direction, double distance, PatchId pat
   const std::uint32_t bright_area = light_.bright_areas.of(patch);
   return std::ranges::find(plan_.bright_areas, bright_area) == plan_.bright_areas.end() ? kNobody
                                                                                         : kBrightAreas + bright_area;
+}
+
+std::uint32_t View::owner_of(const Vec3& direction) const {
+  if (plan_.openings.empty() && plan_.bright_areas.empty()) return kNobody;
+  const Hit hit = light_.problem.rays.first_hit(light_.problem.patches, {p_, direction});
+  return owner_of(direction, hit.first, hit.reflected ? PatchId{} : hit.patch);
 }
 
 void AreaView::look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,

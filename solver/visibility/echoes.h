@@ -23,11 +23,13 @@ void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& firs
   while (!echo.is_none()) {
     Hit hit = rays.first_hit(patches, echo.ray, &next);
     hit.transmittance *= echo.share;
+    hit.plane = hit.reflected ? kNoPlane : echo.plane;
     if (!hit.reflected) hit.reflected = true, hit.leg = echo.ray;
     found(hit);
     const double chance = luminous_mean(next.share);
     if (!(random.uniform() < chance)) return;
     next.share *= echo.share * (1 / std::min(chance, 1.0));
+    next.plane = kNoPlane;
     echo = next;
   }
 }

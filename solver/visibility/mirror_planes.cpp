@@ -19,6 +19,14 @@ void MirrorPlane::add(const Vec3& x) {
   for (std::size_t k = 0; k < 2; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
 }
 
+bool MirrorPlane::is_over(const Vec3& p, const Vec3& n) const {
+  const Vec3 foot = normal * offset;
+  for (const double a : {low[0], high[0]})
+    for (const double b : {low[1], high[1]})
+      if (dot(n, foot + u * a + v * b - p) > 0) return true;
+  return false;
+}
+
 bool MirrorPlane::is_within(const Vec3& x, double margin) const {
   const double a = dot(u, x), b = dot(v, x);
   return a >= low[0] - margin && a <= high[0] + margin && b >= low[1] - margin && b <= high[1] + margin;

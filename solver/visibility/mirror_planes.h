@@ -23,6 +23,8 @@ struct MirrorPlane {
   Vec3 image_of(const Vec3& x) const { return x - normal * (2 * height(x)); }
   Vec3 image_of_direction(const Vec3& d) const { return d - normal * (2 * dot(normal, d)); }
   void add(const Vec3& x);
+  /// Whether any of the rectangle is in front of a surface at p with normal n.
+  bool is_over(const Vec3& p, const Vec3& n) const;
   bool is_within(const Vec3& x, double margin) const;
 };
 

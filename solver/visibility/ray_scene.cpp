@@ -128,14 +128,14 @@ class EchoChoice {
   explicit operator bool() const { return echo_ != nullptr; }
 
   /// The next pane turns this share back; from there the echo goes along `ray`.
-  void offer(const Spectrum& share, const Ray& ray) {
+  void offer(std::uint32_t plane, const Spectrum& share, const Ray& ray) {
     const double weight = luminous_mean(share);
     if (!(weight > 0)) return;
     all_ += weight;
     if (weight < all_) {
       if (!(random_number() * all_ < weight)) return;
     }
-    chosen_ = weight, *echo_ = {share, ray};
+    chosen_ = weight, *echo_ = {plane, share, ray};
   }
   /// After the last pane.
   void finish() {
@@ -160,6 +160,7 @@ struct PanesOnLeg {
   EchoChoice* choice = nullptr;  ///< null: nobody
   Spectrum so_far{1.0};          ///< what is left of the ray where the leg starts
   double lift_share = 1;
+  bool is_first = true;  ///< no mirror comes before it
 };
 
 }  // namespace
@@ -309,7 +310,8 @@ struct RayScene::Impl {
       ray = {off_surface(x, n, share), ray.direction - mirror->normal * (2 * along)};
       const Spectrum so_far = hit.transmittance * mirror->reflectance;
       const double to_first = hit.first;
-      hit = one_leg(patches, ray, {choice, so_far, share});
+      hit = one_leg(patches, ray, {choice, so_far, share, false});
+      hit.plane = k == 0 ? mirror->plane : kNoPlane;
       hit.first = to_first;
       hit.transmittance *= so_far;
       hit.reflected = true;
@@ -372,7 +374,8 @@ struct RayScene::Impl {
     walk_glass(origin, direction, far, finely, [&](double distance, TriangleId pane) {
       const double cosine = dot(unit_normal(pane), direction);
       if (panes.choice)
-        panes.choice->offer(panes.so_far * share * glass_of(pane).reflectance(cosine),
+        panes.choice->offer(panes.is_first ? glass_plane[pane] : kNoPlane,
+                            panes.so_far * share * glass_of(pane).reflectance(cosine),
                             turned(origin, direction, distance, unit_normal(pane), corner(pane, 0), panes.lift_share));
       share *= glass_of(pane).transmittance(cosine);
     });

@@ -14,6 +14,8 @@
 
 namespace clerestory {
 
+inline constexpr std::uint32_t kNoPlane = 0xffffffff;
+
 struct Ray {
   Vec3 origin;     ///< already off its surface, see RayScene::off_surface() [m]
   Vec3 direction;  ///< unit
@@ -33,9 +35,10 @@ struct Hit {
   double distance = 0;          ///< along the unit direction [m]
   Spectrum transmittance{1.0};  ///< of glass and mirrors on the way
 
-  double first = 0;        ///< distance to the first surface, be it a mirror [m]
-  bool reflected = false;  ///< by mirrors on the way, or by glass
-  Ray leg;                 ///< when reflected: the last part of the way; `distance` is its length then
+  double first = 0;                ///< distance to the first surface, be it a mirror [m]
+  bool reflected = false;          ///< by mirrors on the way, or by glass
+  std::uint32_t plane = kNoPlane;  ///< in which, when that is one: its number in RayScene::mirrors()
+  Ray leg;                         ///< when reflected: the last part of the way; `distance` is its length then
 
   bool escaped() const { return !triangle.valid(); }
   /// Direction [unit] in which `ray` arrived here, and where that is.
@@ -46,6 +49,7 @@ struct Hit {
 /// What panes of glass turn back of a ray that goes on through them, by one of these panes, chosen at random where
 /// there are several.
 struct Echo {
+  std::uint32_t plane = kNoPlane;  ///< of the pane; kNoPlane where a mirror comes before it, too
   Spectrum share{0.0};  ///< of the light that comes along it in what the ray brings; over the chance of the choice
   Ray ray;              ///< from the pane
 
@@ -58,8 +62,6 @@ struct Turn {
   Spectrum share;       ///< of the ray that goes on along `ray`
   Ray ray;
 };
-inline constexpr std::uint32_t kNoPlane = 0xffffffff;
-
 /// Sixteen segments for one packet, as separate coordinates; both ends already off their surfaces.
 struct SegmentPacket {
   alignas(64) std::array<float, 16> from_x, from_y, from_z, to_x, to_y, to_z;

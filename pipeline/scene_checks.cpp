@@ -73,7 +73,7 @@ void warn_about_luminaires(const Problem& problem, Observer& observer) {
   const int first_look = static_cast<int>(std::clamp<std::size_t>(kMostRays / luminaires.size(), 8, kDirections));
   std::size_t shown = 0, more = 0;
   for (const PlacedLuminaire& luminaire : luminaires) {
-    if (luminaire.mirror != kNoMirror) continue;
+    if (luminaire.is_image()) continue;
     const bool may_be_open = open_share(problem, luminaire.position, first_look) > kOpen;
     if (may_be_open && shown == kShown) {
       ++more;
@@ -186,6 +186,12 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
 std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,
                                            Observer& observer) {
   warn_about_luminaires(problem, observer);
+  constexpr double kMuch = 0.01;
+  if (const double lost = problem.lights.lost_in_mirrors; lost > kMuch)
+    observer.warn(
+        text(scene.file, ": mirrors and glass turn ", percent(lost),
+             " of the light of lamps and sun on ways that are not followed (more than 64 planes, more than 15 "
+             "one after another, or each with very little); it is missing where it arrives."));
   return warn_about_sensors(problem, scene.file, sensors, observer);
 }
 

@@ -75,7 +75,7 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
       throw InputError(text(object.where(), ": glass does not emit; give the light to another surface"));
     if (object.has("reflectance")) {
       warnings.push_back(text(object.place("reflectance"),
-                              " is not used: what glass reflects follows from its index, 1.52, and is lost in it"));
+                              " is not used: what glass reflects follows from its transmittance and its index, 1.52"));
     }
     // 0.92 is what people write for clear glass.
     if (transmittance->value.max() > 0.925) {

@@ -25,10 +25,10 @@ std::size_t share_of(const RayShares& shares, const RayBudget& budget, int strat
 }
 
 /// Adds what rays met to a row, each ray with its weight.
-void add_to_row(std::span<RowEntry> found, std::span<const double> weight, LightRow& row) {
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    found[k].scale(Spectrum(weight[k]));
-    if (!found[k].is_empty()) row.push_back(found[k]);
+void add_to_row(FoundByRays& found, std::span<const double> weight, LightRow& row) {
+  for (std::size_t e = 0; e < found.entry.size(); ++e) {
+    found.entry[e].scale(Spectrum(weight[found.ray[e]]));
+    if (!found.entry[e].is_empty()) row.push_back(found.entry[e]);
   }
 }
 
@@ -41,15 +41,15 @@ struct Sum {
 Sum from_bundle(const View& view, const Frame& frame, const Strata& strata, const RayShares& shares,
                 unsigned long long& rays, LightRow* row) {
   std::array<Vec3, 16> directions;
-  std::array<RowEntry, 16> found;
+  FoundByRays found;
   std::array<double, 16> density, share_of_ray;
   std::array<Spectrum, 16> values;
   std::size_t queued = 0;
   Sum sum;
   const auto flush = [&] {
-    const auto met = std::span(found).first(row ? queued : 0);
-    view.look(std::span(directions).first(queued), density, kNobody, std::span(values).first(queued), met);
-    if (row) add_to_row(met, share_of_ray, *row);
+    view.look(std::span(directions).first(queued), density, kNobody, std::span(values).first(queued),
+              row ? &found : nullptr);
+    if (row) add_to_row(found, share_of_ray, *row);
     for (std::size_t k = 0; k < queued; ++k) sum.E += values[k] * share_of_ray[k];
     for (std::size_t k = 0; k + 1 < queued; k += 2) {
       const double difference =
@@ -91,7 +91,7 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
   std::array<std::array<float, 2>, 16> points;
   std::array<Spectrum, 16> values;
   std::array<PolygonView::Sight, 16> sights;
-  std::array<RowEntry, 16> found;
+  FoundByRays found;
   std::array<double, 16> weight;
   Spectrum by_rays(0.0);
   const std::size_t begin = row ? row->size() : 0;
@@ -101,8 +101,7 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
       const AreaCell cell = plan[first + k];
       points[k] = cells.points(cell.grid)[cell.number];
     }
-    const auto met = std::span(found).first(row ? count : 0);
-    view.look(std::span(points).first(count), std::span(values).first(count), sights, met);
+    view.look(std::span(points).first(count), std::span(values).first(count), sights, row ? &found : nullptr);
     double last = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [direction, per_share] = sights[k];
@@ -113,7 +112,7 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
       last = luminous_mean(E);
       by_rays += values[k] * weight[k];
     }
-    if (row) add_to_row(met, weight, *row);
+    if (row) add_to_row(found, weight, *row);
   }
   // Where less is seen of an area than the plan knew, its rays may take away a little more than the mean brought; they
   // alone give what is left, and nothing where they find nothing.
@@ -157,6 +156,34 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
   return sum / count;
 }
 
+/// What mirrors and panes show of bright patches: by shadow rays to their images.
+Spectrum bright_patches_in_mirrors(const Illumination& light, const Vec3& p, const Frame& frame,
+                                   const GatherPattern& pattern, const GatherPlan& plan, const View& view,
+                                   LightRow* row) {
+  const RayScene& rays = light.problem.rays;
+  const RayBudget& budget = pattern.quality().bundle;
+  Spectrum sum(0.0);
+  for (std::size_t m = 0; m < plan.mirrors.size(); ++m) {
+    const MirrorPlane& mirror = rays.mirrors()[plan.mirrors[m]];
+    const MirrorWay way = MirrorWay{}.over(plan.mirrors[m]);
+    for (int k = 0; k < plan.rays_in_mirror; ++k) {
+      const auto& u = pattern.bright_choices()[static_cast<std::size_t>(k)];
+      const LightSample s = light.sampler.sample(view.in_mirrors()[m], u[0], u[1], u[2], true);
+      if (!(s.density > 0)) continue;
+      const Vec3 image = mirror.image_of(s.end), d = normalized(image - p);
+      const Spectrum passes = rays.transmittance_by_mirrors(p, image, way);
+      if (passes.is_black() || view.owner_of(d) != kNobody) continue;
+      const std::size_t share = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
+      const double bundle = static_cast<double>(share) * budget.strata() * dot(frame.n, d) / kPi;
+      const Spectrum weight =
+          passes * (balance_heuristic(plan.rays_in_mirror * s.density, bundle) / plan.rays_in_mirror);
+      sum += s.irradiance * weight;
+      if (row) row->push_back(RowEntry::of_patch(s.patch, s.weight * weight));
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
@@ -185,6 +212,10 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
   if (to_bright_patches > 0) {
     at.E += bright_patches(light, p, frame, pattern, plan, view, row);
     rays += static_cast<unsigned>(to_bright_patches);
+  }
+  if (!plan.mirrors.empty()) {
+    at.E += bright_patches_in_mirrors(light, p, frame, pattern, plan, view, row);
+    rays += 2 * static_cast<unsigned long long>(plan.rays_in_mirror) * plan.mirrors.size();
   }
   // Where it is all but dark, what differs from a plan's mean may leave less than nothing.
   at.E = {std::max(0.0, at.E[0]), std::max(0.0, at.E[1]), std::max(0.0, at.E[2])};

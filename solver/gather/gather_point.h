@@ -25,8 +25,10 @@ using RayShares = std::vector<std::uint8_t>;
 struct GatherPlan {
   RayShares bundle;
   double delta_light = 0;  ///< at its point, luminous mean [W/m2]: it needs no care for what is little beside that
-  bool looks_for_bright_patches = true;               ///< by shadow rays; else bright patches are left to the bundle
-  std::vector<std::uint32_t> openings, bright_areas;  ///< looked at by rays of their own
+  bool looks_for_bright_patches = true;  ///< by shadow rays; else bright patches are left to the bundle
+  std::vector<std::uint32_t> mirrors;    ///< planes (RayScene::mirrors) in which bright patches are looked for, too
+  int rays_in_mirror = 0;                ///< shadow rays to what each of them shows
+  std::vector<std::uint32_t> openings, bright_areas;       ///< looked at by rays of their own
   std::vector<AreaPlan> opening_plans, bright_area_plans;  ///< of each of them; values are pi times the radiance [W/m2]
 };
 
@@ -41,8 +43,8 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 /// areas by rays at them, and by nothing else: a ray belongs to the first of the openings that it passes, else to the
 /// bright area that it meets. Only what differs from the mean that the plan knows is left to chance: form factors times
 /// that mean are closed forms, so an even sky or bright area that nothing hides is exact. Other bright patches, glowing
-/// or lit, by shadow rays and by the bundle, weighted by the balance heuristic; the rest by the bundle, which looks up
-/// B (or the sky) where its rays land.
+/// or lit, by shadow rays and by the bundle, weighted by the balance heuristic, and so are those that the plan's
+/// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.

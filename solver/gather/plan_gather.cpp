@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 
@@ -21,7 +22,8 @@ constexpr double kNarrow = 4;  ///< times the bundle's density of directions: wh
 constexpr double kWorthAShare = 0.001;  ///< of all light at a point, else it is left to chance
 constexpr double kWorthLooking = 0.1;   ///< share of bright patches' light outside of the bright areas looked at
 constexpr double kLeastOfBest = 0.2;    ///< of the light of the best bright area, else it has no rays of its own
-constexpr std::size_t kMostOpenings = 8, kMostBrightAreas = 4;  ///< that a point looks at by rays of their own
+constexpr std::size_t kMostOpenings = 8, kMostBrightAreas = 4,
+                      kMostMirrors = 4;  ///< that a point looks at by rays of their own
 
 /// Whether a few rays to bright patches bring light that the bundle would find by chance only: those outside of a room
 /// are none of its lamps, and a sunlit ground is as wide as what a bundle looks for anyway.
@@ -47,6 +49,45 @@ bool misses_bright_patches(const Illumination& light, const Vec3& p, const Vec3&
   shadows.trace();
   if (!(narrow > 0)) return light.sky.dark();  // all the light there is comes from somewhere
   return narrow > kWorthAShare * (others + wide + narrow);
+}
+
+/// By day a pane shows little beside what comes through it.
+bool is_worth_asking(const MirrorPlane& mirror, const Illumination& light) {
+  return !mirror.is_glass || light.sky.dark();
+}
+
+/// The planes of mirrors and panes that show bright patches which a bundle would find by chance only.
+std::vector<std::uint32_t> mirrors_worth_looking(const Illumination& light, const Vec3& p, const Vec3& n,
+                                                 const GatherPattern& pattern, double others,
+                                                 unsigned long long& rays) {
+  const RayScene& scene = light.problem.rays;
+  if (scene.mirrors().empty() || !light.sampler.has_bright_patches()) return {};
+  constexpr std::size_t kPilots = 16;
+  struct Found {
+    double light;
+    std::uint32_t plane;
+  };
+  std::vector<Found> found;
+  for (std::uint32_t m = 0; m < scene.mirrors().size(); ++m) {
+    const MirrorPlane& mirror = scene.mirrors()[m];
+    if (!is_worth_asking(mirror, light) || !mirror.is_over(p, n)) continue;
+    const LightTree::Receiver behind = View::seen_in(light, p, n, m);
+    double narrow = 0;
+    for (std::size_t k = 0; k < kPilots; ++k) {
+      const auto& u = pattern.bright_pilots()[k * (GatherPattern::kBrightPilots / kPilots)];
+      const LightSample s = light.sampler.sample(behind, u[0], u[1], u[2], true);
+      if (!(s.density > 0)) continue;
+      const Vec3 image = mirror.image_of(s.end);
+      if (!(s.density > kNarrow * dot(n, normalized(image - p)) / std::numbers::pi)) continue;
+      narrow += luminous_mean(s.irradiance * scene.transmittance_by_mirrors(p, image, MirrorWay{}.over(m))) / kPilots;
+    }
+    rays += kPilots;
+    if (narrow > kWorthAShare * others) found.push_back({narrow, m});
+  }
+  std::ranges::stable_sort(found, std::greater<>(), &Found::light);
+  std::vector<std::uint32_t> planes;
+  for (const Found& f : std::span(found).first(std::min(found.size(), kMostMirrors))) planes.push_back(f.plane);
+  return planes;
 }
 
 /// What a few rays find of sky that belongs to none of the openings: part of the view may be sky, or end at a bright
@@ -158,6 +199,8 @@ bool wants_plan(const Illumination& light, const GatherPattern& pattern) {
   const RayBudget& bundle = pattern.quality().bundle;
   if (!light.bright_areas.shape.empty()) return true;
   if (!light.problem.lights.openings.empty()) return true;
+  const auto may_show = [&](const MirrorPlane& mirror) { return is_worth_asking(mirror, light); };
+  if (light.sampler.has_bright_patches() && std::ranges::any_of(light.problem.rays.mirrors(), may_show)) return true;
   return !light.sky.dark() && bundle.deepest() > bundle.least();
 }
 
@@ -206,6 +249,8 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   plan.looks_for_bright_patches =
       (light.bright_areas.shape.empty() || left > kWorthLooking * light.bright_areas.all_flux) &&
       misses_bright_patches(light, p, n, pattern, known, rays);
+  plan.mirrors = mirrors_worth_looking(light, p, n, pattern, known, rays);
+  plan.rays_in_mirror = pattern.quality().bright_rays;
   const Strata& bundle = pattern.bundle();
   const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
   const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;

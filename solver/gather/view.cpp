@@ -1,38 +1,87 @@
 #include "solver/gather/view.h"
 
+#include "solver/model/streams.h"
+#include "solver/model/units.h"
 #include "solver/sampling/packed_direction.h"
 #include "solver/sampling/two_estimators.h"
+#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 
 void View::look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
-                std::span<Spectrum> values, std::span<RowEntry> found) const {
+                std::span<Spectrum> values, FoundByRays* found) const {
   std::array<Ray, 16> rays;
   std::array<Hit, 16> hits;
+  if (found) found->clear();
+  std::array<Echo, 16> echoes;
   for (std::size_t k = 0; k < directions.size(); ++k) rays[k] = {p_, directions[k]};
   const Problem& problem = light_.problem;
-  problem.rays.first_hits(problem.patches, std::span(rays).first(directions.size()), hits);
+  const bool has_glass = problem.rays.has_glass();
+  problem.rays.first_hits(problem.patches, std::span(rays).first(directions.size()), hits,
+                          std::span(echoes).first(has_glass ? directions.size() : 0));
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Hit& hit = hits[k];
     values[k] = Spectrum(0.0);
-    if (!found.empty()) found[k] = {};
     if (owner_of(directions[k], hit.first, hit.reflected ? PatchId{} : hit.patch) != owner) continue;
     if (hit.escaped()) {
       const Vec3& direction = hit.direction(rays[k]);
       values[k] = light_.sky(direction) * std::numbers::pi * hit.transmittance;
-      if (!found.empty()) found[k] = RowEntry::of_sky(pack_direction(direction), std::numbers::pi * hit.transmittance);
+      if (found) found->add(k, RowEntry::of_sky(pack_direction(direction), std::numbers::pi * hit.transmittance));
     } else if (hit.patch.valid()) {
       Spectrum back = light_.sampler.glow()[hit.patch];
       double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
       back *= share;
-      if (owner == kNobody && bright_rays_ > 0) {
-        share = balance_heuristic(density[k], bright_rays_ * light_.sampler.density(hit, at_, directions[k], true));
+      if (owner == kNobody) {
+        share = share_of_bundle(hit, rays[k], density[k]);
         back *= share;
       }
       values[k] = back * hit.transmittance;
-      if (!found.empty()) found[k] = RowEntry::of_patch(hit.patch, share * hit.transmittance);
+      if (found) found->add(k, RowEntry::of_patch(hit.patch, share * hit.transmittance));
     }
+    if (has_glass && !echoes[k].is_none())
+      values[k] +=
+          turned_back(echoes[k], rays[k], owner == kNobody ? density[k] : 0, luminous_mean(values[k]), k, found);
   }
+}
+
+double View::share_of_bundle(const Hit& hit, const Ray& ray, double density) const {
+  if (!hit.reflected)
+    return bright_rays_ > 0
+               ? balance_heuristic(density, bright_rays_ * light_.sampler.density(hit, at_, ray.direction, true))
+               : 1;
+  if (in_mirrors_.empty() || hit.plane == kNoPlane || !light_.sampler.is_bright(hit.patch)) return 1;
+  const auto m = std::ranges::find(plan_.mirrors, hit.plane);
+  if (m == plan_.mirrors.end()) return 1;
+  const double distance = length(hit.leg.origin - p_) + hit.distance;
+  const double cosine = -dot(light_.problem.patches.normal[hit.patch], hit.leg.direction);
+  const LightTree::Receiver& behind = in_mirrors_[static_cast<std::size_t>(m - plan_.mirrors.begin())];
+  return balance_heuristic(density,
+                           plan_.rays_in_mirror * light_.sampler.density(hit.patch, behind, distance, cosine, true));
+}
+
+Spectrum View::turned_back(const Echo& echo, const Ray& ray, double density, double goes_on, std::size_t k,
+                           FoundByRays* found) const {
+  // By judgement: the noise of a ray that is sent once in eight times is that of eight times what is usual around it.
+  constexpr double kLeastChance = 1.0 / 8, kMuch = 8;
+  const double usual = luminous_mean(echo.share) * light_.bright_areas.ambient;
+  const double chance = goes_on > 0 ? std::clamp(kMuch * usual / goes_on, kLeastChance, 1.0) : 1;
+  RandomStream random(key_of(ray, kEchoes));
+  if (!(random.uniform() < chance)) return Spectrum(0.0);
+  const Problem& problem = light_.problem;
+  Spectrum sum(0.0);
+  follow_echo(problem.rays, problem.patches, echo, random, [&](const Hit& hit) {
+    const Spectrum weight = hit.transmittance / chance;
+    if (hit.escaped()) {
+      const Vec3& direction = hit.direction(ray);
+      sum += light_.sky(direction) * std::numbers::pi * weight;
+      if (found) found->add(k, RowEntry::of_sky(pack_direction(direction), std::numbers::pi * weight));
+    } else if (hit.patch.valid()) {
+      const double share = density > 0 ? share_of_bundle(hit, ray, density) : 1;
+      sum += light_.sampler.glow()[hit.patch] * (share * weight);
+      if (found) found->add(k, RowEntry::of_patch(hit.patch, share * weight));
+    }
+  });
+  return sum;
 }
 
 double View::slit_gain(std::uint32_t number, const Vec3& direction, double distance) const {
@@ -49,8 +98,14 @@ std::uint32_t View::owner_of(const Vec3& direction, double distance, PatchId pat
                                                                                         : kBrightAreas + bright_area;
 }
 
+std::uint32_t View::owner_of(const Vec3& direction) const {
+  if (plan_.openings.empty() && plan_.bright_areas.empty()) return kNobody;
+  const Hit hit = light_.problem.rays.first_hit(light_.problem.patches, {p_, direction});
+  return owner_of(direction, hit.first, hit.reflected ? PatchId{} : hit.patch);
+}
+
 void AreaView::look(std::span<const std::array<float, 2>> points, std::span<Spectrum> values,
-                    std::span<PolygonView::Sight> sights, std::span<RowEntry> found) const {
+                    std::span<PolygonView::Sight> sights, FoundByRays* found) const {
   std::array<Vec3, 16> directions;
   std::array<double, 16> density{};  // counts for rays that belong to nobody only
   for (std::size_t k = 0; k < points.size(); ++k) {

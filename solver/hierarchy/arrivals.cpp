@@ -11,6 +11,7 @@
 #include "solver/openings/openings.h"
 #include "solver/sampling/packed_direction.h"
 #include "solver/sampling/two_estimators.h"
+#include "solver/visibility/echoes.h"
 #include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
@@ -34,7 +35,7 @@ class Collector {
   Collector(const ReceiverArea& area, const Surroundings& around, int rays, int pairs, Arrivals& out)
       : area_(area), around_(around), R_(rays), L_(pairs), out_(out), slits_(around.slits.slits_over(area)) {}
 
-  void take_bundle(const Bundle& bundle) {
+  void take_bundle(const Bundle& bundle, std::uint64_t key) {
     const std::size_t n = area_.members().size();
     std::array<double, kMostMembers> share{1.0};  // a single member gets all
     BundleSums sums;
@@ -44,10 +45,19 @@ class Collector {
       const auto shares = std::span(share).first(n);
       if (n > 1) area_.find_shares(ray.direction, shares);
       if (hit.escaped())
-        take_escape(ray, hit, shares, sums);
+        take_escape(ray, hit, false, shares, sums);
       else if (hit.patch.valid() && !comes_by_slit(ray.origin, ray.direction, hit.first))
         take_patch(ray, hit, bundle.from[k]->normal, shares, sums);
       for (std::size_t m = 0; m < n; ++m) sums.all[m] += shares[m];
+      if (bundle.echoes.empty() || bundle.echoes[k].is_none()) continue;
+      RandomStream random = echo_numbers(key, k);
+      const Problem& problem = around_.light.problem;
+      follow_echo(problem.rays, problem.patches, bundle.echoes[k], random, [&](const Hit& echo) {
+        if (echo.escaped())
+          take_escape(ray, echo, true, shares, sums);
+        else if (echo.patch.valid())
+          take_patch(ray, echo, bundle.from[k]->normal, shares, sums);
+      });
     }
     note_view(sums);
   }
@@ -92,13 +102,14 @@ class Collector {
     return slit_on_the_way(from, direction, distance) != kNoOpening;
   }
 
-  void take_escape(const Ray& ray, const Hit& hit, std::span<const double> share, BundleSums& sums) {
+  /// is_echo: glass turned it back, and direct light has not looked for it.
+  void take_escape(const Ray& ray, const Hit& hit, bool is_echo, std::span<const double> share, BundleSums& sums) {
     const double passes = luminous_mean(hit.transmittance);
     for (std::size_t m = 0; m < share.size(); ++m) sums.escapes[m] += share[m] * passes;
     if (!around_.keeps_sky_views || hit.transmittance.is_black()) return;
     std::uint32_t looking = 0;
     for (std::size_t m = 0; m < share.size(); ++m)
-      if (!is_looked_for(around_, area_.members()[m].patch, ray, hit)) looking |= 1u << m;
+      if (is_echo || !is_looked_for(around_, area_.members()[m].patch, ray, hit)) looking |= 1u << m;
     if (looking == 0) return;
     out_.views.push_back(pack_sky_view(hit.direction(ray), hit.transmittance));
     if (area_.hands_down()) out_.shared_views.push_back({pack_direction(ray.direction), looking});
@@ -178,7 +189,7 @@ void find_arrivals(const ReceiverArea& area, const Bundle& bundle, const Surroun
                    std::uint64_t key, Arrivals& out) {
   clear(out, area.hands_down());
   Collector collector(area, around, static_cast<int>(bundle.rays.size()), pairs, out);
-  collector.take_bundle(bundle);
+  collector.take_bundle(bundle, key);
   if (pairs > 0) collector.take_pairs(mix_bits(key + kBrightPairs));
   make_sum_one(area.members().size(), static_cast<int>(bundle.rays.size()), out);
   collector.take_slits();

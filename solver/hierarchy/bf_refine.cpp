@@ -14,6 +14,7 @@
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/spaces/closure.h"
+#include "solver/visibility/echoes.h"
 #include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::size_t kPatchesInBlock = 32;
 constexpr int kRaysForClosure = 64;
-constexpr std::uint32_t kPairsOfLink = 16;
+constexpr std::uint32_t kPairsOfLink = 16, kRaysForEchoes = 128;
 
 Vec3 centre_of(const Sphere& s) { return {s.centre[0], s.centre[1], s.centre[2]}; }
 
@@ -78,6 +79,34 @@ class PatchLinks {
       refine(tree.end[p + 1], q);
     } else {
       refine_children_of_source(p, q);
+    }
+  }
+
+  /// What panes turn back to the leaves: by rays, as kernels do not find it.
+  void link_echoes() {
+    const Problem& problem = scene_.problem;
+    if (!problem.rays.has_glass()) return;
+    for (std::uint32_t v = root_; v < scene_.tree.end[root_]; ++v) {
+      if (!scene_.tree.is_leaf(v)) continue;
+      const PatchId leaf = scene_.leaf(v);
+      const Frame frame(problem.patches.normal[leaf]);
+      const auto corners = problem.patches.corner_positions(leaf);
+      const std::uint64_t key = stream_key(options_.seed, kEchoFactors, leaf.value);
+      for (std::uint32_t k = 0; k < kRaysForEchoes; ++k) {
+        const auto u = sobol4(k, key);
+        Echo echo;
+        problem.rays.first_hit(problem.patches,
+                               {problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
+                                cosine_direction(frame, u[0], u[1])},
+                               &echo);
+        RandomStream random = echo_numbers(key, k);
+        follow_echo(problem.rays, problem.patches, echo, random, [&](const Hit& hit) {
+          if (hit.patch.valid())
+            links_[v - root_].push_back({scene_.tree.node_of_patch[hit.patch],
+                                         static_cast<float>(luminous_mean(hit.transmittance) / kRaysForEchoes)});
+        });
+      }
+      rays += kRaysForEchoes;
     }
   }
 
@@ -169,6 +198,7 @@ BfLinks bf_refine(const Problem& problem, const ElementTree& tree, const Field& 
         for (std::size_t k = first; k < last; ++k) {
           PatchLinks links(scene, options, patches[k]);
           links.refine(patches[k], 0);
+          links.link_echoes();
           links.write(block);
           to_halve[b].insert(to_halve[b].end(), links.to_halve.begin(), links.to_halve.end());
           rays[b] += links.rays;

@@ -23,7 +23,8 @@ void send_bundle(const ReceiverArea& area, const Problem& problem, const BundleN
     bundle.rays[k] = {problem.rays.off_surface(point_on_triangle(from.corners, u[2], u[3]), from.normal),
                       cosine_direction(alone ? frame : Frame(from.normal), u[0], u[1])};
   }
-  problem.rays.first_hits(problem.patches, bundle.rays, bundle.hits);
+  if (problem.rays.has_glass()) bundle.echoes.resize(bundle.rays.size());
+  problem.rays.first_hits(problem.patches, bundle.rays, bundle.hits, bundle.echoes);
 }
 
 BrightPair bright_pair(const ReceiverArea& area, const Illumination& light, std::uint32_t number, std::uint64_t key) {

@@ -17,6 +17,7 @@ namespace clerestory {
 struct Bundle {
   std::vector<Ray> rays;
   std::vector<Hit> hits;
+  std::vector<Echo> echoes;  ///< by ray; empty without glass
   std::vector<const ReceiverArea::Member*> from;
 
   explicit Bundle(int count) : rays(static_cast<std::size_t>(count)), hits(rays.size()), from(rays.size()) {}

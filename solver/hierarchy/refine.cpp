@@ -12,6 +12,7 @@
 #include "solver/model/units.h"
 #include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/echoes.h"
 #include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
@@ -71,14 +72,27 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
     const Vec3 d = cosine_direction(frame, u[0], u[1]);
     for (std::size_t s = 0; s < kParts; ++s) {
       const Vec3 x = lifted(point_on_triangle(parts[s], u[2], u[3]));
-      const Hit hit = problem.rays.first_hit(patches, {x, d});
+      Echo echo;
+      const Hit hit = problem.rays.first_hit(patches, {x, d}, &echo);
       value[s] = 0;
-      if (hit.escaped())
-        value[s] = std::numbers::pi * luminous_mean(light.sky(hit.direction({x, d})) * hit.transmittance);
-      if (!hit.patch.valid()) continue;
+      const auto take = [&](const Hit& h, double weight) {
+        if (h.escaped())
+          value[s] += std::numbers::pi * luminous_mean(light.sky(h.direction({x, d})) * h.transmittance);
+        else if (h.patch.valid())
+          value[s] += weight * luminous_mean(B[h.patch] * h.transmittance);
+      };
+      if (!echo.is_none()) {
+        // All parts share the numbers.
+        RandomStream random = echo_numbers(key, static_cast<std::uint64_t>(k));
+        follow_echo(problem.rays, patches, echo, random, [&](const Hit& h) { take(h, 1); });
+      }
+      if (!hit.patch.valid()) {
+        take(hit, 1);
+        continue;
+      }
       const double other = pairs > 0 ? pairs * light.sampler.density(hit, x, normal, d, true) : 0;
       const double weight = balance_heuristic(kDirections * dot(normal, d) / std::numbers::pi, other);
-      value[s] = weight * luminous_mean(B[hit.patch] * hit.transmittance);
+      take(hit, weight);
     }
     bundle.add(value);
   }

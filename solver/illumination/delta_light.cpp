@@ -23,7 +23,7 @@ struct ShadowTry {
   ShadowSegment way;
   Spectrum irradiance;       ///< when nothing blocks
   std::uint32_t number = 0;  ///< of the light, see Layer::lights
-  std::uint32_t mirror = kNoMirror;
+  MirrorWay over{};          ///< of an image
 };
 
 constexpr double kRaysOfAll = 1 << 14;  ///< for all the flux of a luminaire: of patches near it that are partly hidden
@@ -63,7 +63,7 @@ class PatchSampler {
     // there.
     const Vec3 d = luminaire.position - middle;
     const double all_round = luminous_mean(power(luminaire)) / (4 * std::numbers::pi * (dot(d, d) + size2));
-    return std::min(sum / 4, 10 * all_round) + 0.05 * all_round;
+    return luminaire.share * (std::min(sum / 4, 10 * all_round) + 0.05 * all_round);
   }
 
   bool is_behind(const PlacedLuminaire& luminaire, const Beam& beam) const {
@@ -81,7 +81,7 @@ class PatchSampler {
     const Vec3 middle = centre();
     const auto try_of = [&](double flux, const Vec3& q, const std::array<double, 4>& u) -> ShadowTry {
       const Vec3 from = problem_.rays.off_surface(view.lit_point(u[0], u[1]), normal_);
-      return {shadow_segment(luminaire, q, from), per_flux * flux, number, luminaire.mirror};
+      return {shadow_segment(luminaire, q, from), per_flux * flux, number, luminaire.way};
     };
     if (opening_rays(luminaire, middle) == 1) {
       const double flux = view.look_from(luminaire.position);
@@ -177,11 +177,11 @@ class PatchSampler {
       if (to_light.irradiance.is_black()) continue;
       ++tally.facing;
       const auto& [from, to, is_free] = to_light.way;
-      if (to_light.mirror == kNoMirror && !is_free) {
+      if (to_light.over.empty() && !is_free) {
         shadows.send(from, to, {to_light.irradiance, to_light.number});
         continue;
       }
-      const Spectrum passes = is_free ? Spectrum(1.0) : rays.transmittance_by_mirror(from, to, to_light.mirror);
+      const Spectrum passes = is_free ? Spectrum(1.0) : rays.transmittance_by_mirrors(from, to, to_light.over);
       tally.sum += to_light.irradiance * passes;
       tally.visible += !passes.is_black();
       if (row_ && !passes.is_black()) note(to_light.number, to_light.irradiance * passes);
@@ -209,7 +209,7 @@ Spectrum from_luminaire(const Lights& lights, std::span<const Beam> beams, std::
       [&](const Vec3& p, double u, double v, const auto&) -> ShadowTry {
         const Vec3 q = light_point(luminaire, p, u, v);
         return {shadow_segment(luminaire, q, p), open_irradiance(luminaire, q, p, patch.normal()), number,
-                luminaire.mirror};
+                luminaire.way};
       },
       opening_rays(luminaire, patch.centre()) > 4);
 }
@@ -271,7 +271,7 @@ Spectrum from_luminaires(const Lights& lights, std::span<const Beam> beams, cons
                    const Vec3 q = light_point(luminaire, p, u, v);
                    return {shadow_segment(luminaire, q, p),
                            open_irradiance(luminaire, q, p, patch.normal()) / probability, over[k].number,
-                           luminaire.mirror};
+                           luminaire.way};
                  },
                  wide);
 }
@@ -280,10 +280,8 @@ Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, std::uint32_t
   if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
   return patch.mean([&](const Vec3& p, double u, double v, const auto&) -> ShadowTry {
     const Vec3 d = direction_to_sun(sun, u, v);
-    return {{p, p + d * far_away, false},
-            sun.normal_irradiance * std::max(0.0, dot(patch.normal(), d)),
-            number,
-            sun.mirror};
+    return {
+        {p, p + d * far_away, false}, sun.normal_irradiance * std::max(0.0, dot(patch.normal(), d)), number, sun.way};
   });
 }
 

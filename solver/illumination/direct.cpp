@@ -16,6 +16,7 @@
 #include "solver/openings/openings.h"
 #include "solver/sampling/packed_direction.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 namespace {
@@ -32,14 +33,20 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
     const auto u = sobol4(static_cast<std::uint32_t>(k), key);
     const Ray ray{problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
                   cosine_direction(frame, u[0], u[1])};
-    const Hit hit = problem.rays.first_hit(problem.patches, ray);
-    if (!hit.escaped() || first_way_out(openings, looked_at, ray.origin, ray.direction, hit.first) != kNoOpening)
-      continue;
-    const Vec3& direction = hit.direction(ray);
-    sum += light.sky(direction) * hit.transmittance;
-    if (row)
-      row->push_back(
-          RowEntry::of_sky(pack_direction(direction), hit.transmittance * (std::numbers::pi / options.sky_rays)));
+    Echo echo;
+    const Hit hit = problem.rays.first_hit(problem.patches, ray, &echo);
+    const auto take = [&](const Hit& h) {
+      if (!h.escaped()) return;
+      const Vec3& direction = h.direction(ray);
+      sum += light.sky(direction) * h.transmittance;
+      if (row)
+        row->push_back(
+            RowEntry::of_sky(pack_direction(direction), h.transmittance * (std::numbers::pi / options.sky_rays)));
+    };
+    if (first_way_out(openings, looked_at, ray.origin, ray.direction, hit.first) == kNoOpening) take(hit);
+    if (echo.is_none()) continue;
+    RandomStream random = echo_numbers(key, static_cast<std::uint64_t>(k));
+    follow_echo(problem.rays, problem.patches, echo, random, take);
   }
   return sum * (std::numbers::pi / options.sky_rays);
 }
@@ -47,17 +54,24 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
 /// Where a luminaire's own rays end: on patches, outside, or in glass and sides that take no part. [W]
 EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, const Beam& beam, std::uint32_t rays,
                       std::uint64_t key) {
-  if (luminaire.mirror != kNoMirror) return {};  // mirrors turn the luminaire's own rays
+  if (luminaire.is_image()) return {};  // mirrors turn the luminaire's own rays
   double sent = 0, arrived = 0, escaped = 0;
   for (std::uint32_t k = 0; k < rays; ++k) {
     const auto u = sobol4(k, key);
     const Vec3 d = direction_in(beam, u[0], u[1]), q = light_point(luminaire, luminaire.position, u[2], u[3]);
     const double I = luminous_mean(intensity(luminaire, d));
     if (!(I > 0)) continue;
-    const Hit hit = problem.rays.first_hit(problem.patches, {ray_start(luminaire, q, d), d});
+    Echo echo;
+    const Hit hit = problem.rays.first_hit(problem.patches, {ray_start(luminaire, q, d), d}, &echo);
     sent += I;
-    if (hit.escaped()) escaped += I * luminous_mean(hit.transmittance);
-    if (hit.patch.valid()) arrived += I * luminous_mean(hit.transmittance);
+    const auto take = [&](const Hit& h) {
+      if (h.escaped()) escaped += I * luminous_mean(h.transmittance);
+      if (h.patch.valid()) arrived += I * luminous_mean(h.transmittance);
+    };
+    take(hit);
+    if (echo.is_none()) continue;
+    RandomStream random = echo_numbers(key, k);
+    follow_echo(problem.rays, problem.patches, echo, random, take);
   }
   const double flux = luminous_mean(power(luminaire));
   if (!(sent > 0)) return {.emitted = flux};

@@ -79,12 +79,14 @@ LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_
   patches_ = LightTree(light_bounds, Falloff::cosine, extent);
 
   light_bounds.clear();
-  for (const Luminaire& luminaire : lights.luminaires) {
+  for (const PlacedLuminaire& luminaire : lights.luminaires) {
     light_bounds.push_back(bounds(luminaire));
-    luminaires_power_ += luminous_mean(power(luminaire));
+    light_bounds.back().power *= luminaire.share;
+    luminaires_power_ += luminaire.share * luminous_mean(power(luminaire));
   }
   if (luminaires_power_ > 0) luminaires_ = LightTree(light_bounds, Falloff::none, extent);
-  for (const Sun& sun : lights.suns) suns_power_ += luminous_mean(sun.normal_irradiance) * cross_section(problem.rays);
+  for (const PlacedSun& sun : lights.suns)
+    suns_power_ += sun.share * luminous_mean(sun.normal_irradiance) * cross_section(problem.rays);
 }
 
 LightSampler::Shares LightSampler::shares(const Vec3& p, const Vec3& n) const {
@@ -129,12 +131,8 @@ LightSample LightSampler::on_patch(const LightTree::Receiver& at, double pick, d
   const double r2 = dot(d, d), cos_q = -dot(normal, d) / std::sqrt(r2), area = problem_.patches.area[q];
   CLERESTORY_ASSERT(cos_q, >, 0);
   const double weight = kernel * area / probability;
-  return {problem_.rays.off_surface(point, normal),
-          glow_[q] * weight,
-          probability * r2 / (cos_q * area),
-          q,
-          kNoMirror,
-          weight};
+  return {
+      problem_.rays.off_surface(point, normal), glow_[q] * weight, probability * r2 / (cos_q * area), q, {}, weight};
 }
 
 LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v,
@@ -144,8 +142,7 @@ LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick
   const PlacedLuminaire& luminaire = problem_.lights.luminaires[choice.light];
   const Vec3 q = light_point(luminaire, p, u, v);
   const double probability = share * choice.probability;
-  return {
-      shadow_segment(luminaire, q, p).to, open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.mirror};
+  return {shadow_segment(luminaire, q, p).to, open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.way};
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
@@ -153,7 +150,7 @@ LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, doub
   const PlacedSun* sun = nullptr;
   double power = 0;
   for (const PlacedSun& candidate : problem_.lights.suns) {
-    const double candidate_power = luminous_mean(candidate.normal_irradiance);
+    const double candidate_power = candidate.share * luminous_mean(candidate.normal_irradiance);
     if (!(candidate_power > 0)) continue;
     if (sun) left -= power;
     sun = &candidate, power = candidate_power;
@@ -162,7 +159,7 @@ LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, doub
   const Vec3 d = direction_to_sun(*sun, u, v);
   const double cos_n = dot(n, d), probability = share * power * cross_section(problem_.rays) / suns_power_;
   if (!(cos_n > 0)) return {};
-  return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}, sun->mirror};
+  return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}, sun->way};
 }
 
 double LightSampler::density(PatchId q, const LightTree::Receiver& at, double distance, double cos_q,
@@ -194,12 +191,12 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffo
   auto shadows = shadow_rays<Load>(
       rays, [&](const Load& load, const Spectrum& passes) { arrive(load.irradiance * passes, load.number); });
   const auto look = [&](const ShadowSegment& way, const Spectrum& irradiance, std::size_t number,
-                        std::uint32_t mirror) {
+                        const MirrorWay& over) {
     if (irradiance.is_black()) return;
     if (way.is_free)
       arrive(irradiance, number);
-    else if (mirror != kNoMirror)
-      arrive(irradiance * rays.transmittance_by_mirror(way.from, way.to, mirror), number);
+    else if (!over.empty())
+      arrive(irradiance * rays.transmittance_by_mirrors(way.from, way.to, over), number);
     else
       shadows.send(way.from, way.to, {irradiance, number});
   };
@@ -208,14 +205,13 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffo
     const PlacedLuminaire& luminaire = problem_.lights.luminaires[number];
     const int count = std::min(effort.opening_rays, opening_rays(luminaire, p));
     if (count == 1) {
-      look(shadow_segment(luminaire, luminaire.position, p), open_irradiance(luminaire, p, n), number,
-           luminaire.mirror);
+      look(shadow_segment(luminaire, luminaire.position, p), open_irradiance(luminaire, p, n), number, luminaire.way);
       continue;
     }
     for (int k = 0; k < count; ++k) {
       const OpeningPlace at = opening_place(luminaire, k, count);
       const Vec3 q = light_point(luminaire, p, at.u, at.v);
-      look(shadow_segment(luminaire, q, p), open_irradiance(luminaire, q, p, n) * at.weight, number, luminaire.mirror);
+      look(shadow_segment(luminaire, q, p), open_irradiance(luminaire, q, p, n) * at.weight, number, luminaire.way);
     }
   }
   shadows.trace();
@@ -226,7 +222,7 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffo
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);
       look({p, p + d * (4 * rays.diameter()), false},
            sun.normal_irradiance * (std::max(dot(n, d), 0.0) / effort.sun_rays),
-           problem_.lights.luminaires.size() + number, sun.mirror);
+           problem_.lights.luminaires.size() + number, sun.way);
     }
     shadows.trace();
   }

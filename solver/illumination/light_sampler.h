@@ -25,8 +25,8 @@ struct LightSample {
   Spectrum irradiance;  ///< at the receiver when nothing blocks, divided by the density of the choice
   double density = 0;   ///< of choosing this direction, per solid angle; 0 for lights that a bundle cannot hit
   PatchId patch;        ///< the bright patch it lies on; invalid for other lights
-  std::uint32_t mirror = kNoMirror;  ///< the mirror that shows it, of an image
-  double weight = 0;                 ///< of a bright patch: irradiance = glow * weight [1]
+  MirrorWay way;        ///< of an image
+  double weight = 0;    ///< of a bright patch: irradiance = glow * weight [1]
 };
 
 struct DeltaEffort {

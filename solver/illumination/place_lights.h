@@ -10,8 +10,7 @@ namespace clerestory {
 /// The lights as a solve wants them: in the local frame of the patches, with images in mirrors, and with the openings
 /// through which the sky looks in.
 ///
-/// Behind each plane of mirrors stands an image of each luminaire and sun, for light that takes one mirror on its way;
-/// more than one, and curved mirrors finer than 64 planes, are not found from luminaires and suns.
+/// Images stand behind mirrors and panes, see find_images.h.
 Lights place_lights(const LightSpec& spec, const PatchSet& patches, const RayScene& rays);
 
 /// The first of that alone: no images, no openings.

@@ -17,8 +17,8 @@ constexpr double kRim = 1 - 1e-9;  // of the disc, which ends before 1
 }  // namespace
 
 double SharpLight::open_irradiance(const Vec3& p, const Vec3& n) const {
-  if (luminaire_) return luminous_mean(clerestory::open_irradiance(*luminaire_, p, n));
-  return luminous_mean(sun_->normal_irradiance) * std::max(0.0, dot(n, sun_->direction));
+  if (luminaire_) return luminaire_->share * luminous_mean(clerestory::open_irradiance(*luminaire_, p, n));
+  return sun_->share * luminous_mean(sun_->normal_irradiance) * std::max(0.0, dot(n, sun_->direction));
 }
 
 ShadowSegment SharpLight::to_centre(const Vec3& p, const Vec3& n) const {
@@ -35,17 +35,17 @@ ShadowSegment SharpLight::to_rim(const Vec3& from, int k) const {
 
 std::uint16_t SharpLight::free(std::span<const ShadowSegment> segments) const {
   const RayScene& rays = problem_->rays;
-  const std::uint32_t mirror = sun_ ? sun_->mirror : luminaire_->mirror;
+  const MirrorWay& way = sun_ ? sun_->way : luminaire_->way;
   unsigned free = 0;
   for (std::size_t k = 0; k < segments.size(); ++k) free |= segments[k].is_free ? 1u << k : 0u;
-  if (mirror == kNoMirror) {
+  if (way.empty()) {
     SegmentPacket packet;
     for (std::size_t k = 0; k < segments.size(); ++k) packet.set(static_cast<int>(k), segments[k].from, segments[k].to);
     const auto asked = static_cast<std::uint16_t>(((1u << segments.size()) - 1) & ~free);
     return static_cast<std::uint16_t>(rays.visible16(packet, asked) | free);
   }
   for (std::size_t k = 0; k < segments.size(); ++k)
-    if (!segments[k].is_free && !rays.transmittance_by_mirror(segments[k].from, segments[k].to, mirror).is_black())
+    if (!segments[k].is_free && !rays.transmittance_by_mirrors(segments[k].from, segments[k].to, way).is_black())
       free |= 1u << k;
   return static_cast<std::uint16_t>(free);
 }
@@ -70,7 +70,8 @@ std::vector<SharpLight> sharp_lights(const Problem& problem, std::size_t most) {
   for (const PlacedSun& sun : problem.lights.suns) lights.emplace_back(problem, sun);
   std::vector<std::pair<double, std::uint32_t>> by_power;
   for (const PlacedLuminaire& luminaire : problem.lights.luminaires)
-    by_power.emplace_back(-luminous_mean(power(luminaire)), static_cast<std::uint32_t>(by_power.size()));
+    by_power.emplace_back(-luminaire.share * luminous_mean(power(luminaire)),
+                          static_cast<std::uint32_t>(by_power.size()));
   if (by_power.size() > most) {
     std::sort(by_power.begin(), by_power.end());
     by_power.resize(most);

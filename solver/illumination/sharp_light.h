@@ -19,7 +19,7 @@ class SharpLight {
   SharpLight(const Problem& problem, const PlacedSun& sun) : problem_(&problem), sun_(&sun) {}
   SharpLight(const Problem& problem, const PlacedLuminaire& luminaire) : problem_(&problem), luminaire_(&luminaire) {}
 
-  /// What it gives at p on a plane of normal n where nothing blocks, luminous mean [W/m2].
+  /// What it gives at p on a plane of normal n where nothing blocks, of an image about that, luminous mean [W/m2].
   double open_irradiance(const Vec3& p, const Vec3& n) const;
   /// From which of up to 16 points on a surface of normal n its centre is seen: a bit each.
   std::uint16_t see_centre(std::span<const Vec3> points, const Vec3& n) const;

@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "solver/model/light_spec.h"
+#include "solver/visibility/mirror_planes.h"
 
 namespace clerestory {
-
-inline constexpr std::uint32_t kNoMirror = 0xffffffff;
 
 /// Plane of a surface that a luminaire stands so near to that rays in float may start on its wrong side.
 struct NearPlane {
@@ -24,15 +22,21 @@ struct NearPlane {
   double height(const Vec3& x) const { return dot(normal, x) - offset; }
 };
 
-/// A luminaire, or its image behind a mirror.
+/// A luminaire, or its image behind mirrors or panes.
 struct PlacedLuminaire : Luminaire {
-  std::uint32_t mirror = kNoMirror;      ///< of an image: the mirror (RayScene::mirrors) that shows it
+  MirrorWay way{};                       ///< of an image: the planes (RayScene::mirrors) that show it
   std::vector<NearPlane> near_planes{};  ///< of surfaces around it; see find_near_planes()
+  double share = 1;  ///< about what is left of its light on that way; how much an image is worth looking for [1]
+
+  bool is_image() const { return !way.empty(); }
 };
 
 /// The sun, or its image.
 struct PlacedSun : Sun {
-  std::uint32_t mirror = kNoMirror;  ///< as of PlacedLuminaire
+  MirrorWay way{};   ///< as of PlacedLuminaire
+  double share = 1;  ///< as of PlacedLuminaire
+
+  bool is_image() const { return !way.empty(); }
 };
 
 /// A plane polygon that light comes out of on one side: a gap between surfaces through which the sky or a bright room
@@ -51,6 +55,7 @@ struct Lights {
   std::vector<PlacedLuminaire> luminaires;  ///< the scene's, then images
   std::optional<Sky> sky;
   std::vector<PlacedSun> suns;      ///< the scene's, then images
+  double lost_in_mirrors = 0;       ///< about the share of luminaires' and suns' light on ways that have no image [1]
   std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
 
   /// Those through which the sky is seen: they come first.

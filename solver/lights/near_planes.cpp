@@ -26,7 +26,7 @@ ShadowSegment shadow_segment(const PlacedLuminaire& luminaire, const Vec3& q, co
   const Vec3 a = clear_of(luminaire.near_planes, from, nullptr), b = clear_of(luminaire.near_planes, q, &from);
   double clearance = luminaire.near_planes.front().clearance;
   for (const NearPlane& plane : luminaire.near_planes) clearance = std::min(clearance, plane.clearance);
-  return {a, b, luminaire.mirror == kNoMirror && length(b - a) < clearance};
+  return {a, b, !luminaire.is_image() && length(b - a) < clearance};
 }
 
 Vec3 ray_start(const PlacedLuminaire& luminaire, const Vec3& q, const Vec3& d) {

@@ -34,7 +34,7 @@ SkyRadiance::SkyRadiance(const Lights& lights) {
   }
   Spectrum horizontal = sky.horizontal_irradiance;
   for (const PlacedSun& sun : lights.suns)
-    if (sun.mirror == kNoMirror) horizontal += sun.normal_irradiance * std::max(0.0, sun.direction.z);
+    if (!sun.is_image()) horizontal += sun.normal_irradiance * std::max(0.0, sun.direction.z);
   ground_ = horizontal * (sky.ground_reflectance / pi);
 }
 

@@ -12,6 +12,7 @@
 #include "solver/form_factors/sampled.h"
 #include "solver/form_factors/shaft.h"
 #include "solver/form_factors/triangle_to_triangle.h"
+#include "solver/methods/echo_factors.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
@@ -365,6 +366,7 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
     F.pairs_unblocked = builder.unblocked, F.pairs_sampled = builder.sampled, F.rays = builder.ray_count;
     for (std::size_t i = 0; i < n; ++i) F.row_error[i] = builder.row_std_error(i) + kQuadratureError;
   }
+  if (F.complete) add_echoes(F, patches, rays, options.seed, monitor);
   F.raw_row_sum = row_sums(F);
   F.row_sum = F.raw_row_sum;
   if (!F.complete) return F;

@@ -11,6 +11,7 @@
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/spaces/energy.h"
+#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 namespace {
@@ -113,9 +114,11 @@ void trace(const Problem& problem, const Piece& piece, std::uint64_t seed, std::
   const std::uint64_t key = stream_key(seed, kShots, piece.from);
   for (std::uint32_t k = 0; k < piece.count; ++k) {
     const auto u = sobol4(piece.first + k, key);
-    const Hit hit =
-        problem.rays.first_hit(patches, {problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
-                                         cosine_direction(frame, u[0], u[1])});
+    RandomStream random = echo_numbers(key, piece.first + k);
+    const Hit hit = one_way(problem.rays, patches,
+                            {problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
+                             cosine_direction(frame, u[0], u[1])},
+                            random);
     landings[k] = {hit.patch, hit.escaped()};
     if (!passed.empty()) passed[k] = hit.transmittance;
   }

@@ -9,9 +9,9 @@
 
 namespace clerestory {
 
-/// diffuse: reflects only. glass: passes light straight on, reflects nothing that is followed. diffuser: reflects, and
-/// passes light scattered to its other side, the same from both. mirror: sends light on as a plane mirror does, from
-/// both sides.
+/// diffuse: reflects only. glass: passes light straight on and reflects some as a plane mirror does. diffuser:
+/// reflects, and passes light scattered to its other side, the same from both. mirror: sends light on as a plane mirror
+/// does, from both sides.
 enum class MaterialKind { diffuse, glass, diffuser, mirror };
 /// In the order of the enumerators.
 inline constexpr std::string_view kMaterialKindNames[] = {"diffuse", "glass", "diffuser", "mirror"};
@@ -32,7 +32,7 @@ struct Material {
 
   /// Its sides take light, and are patches; else rays go on from it.
   bool receives() const { return kind == MaterialKind::diffuse || kind == MaterialKind::diffuser; }
-  /// Rays go straight on, with the share that a sheet of `transmittance` passes at their angle.
+  /// Rays go straight on, with the share that a sheet of `transmittance` passes at their angle; another is turned back.
   bool lets_rays_pass() const { return kind == MaterialKind::glass; }
   /// Rays are turned as by a plane mirror, with the share `reflectance`.
   bool turns_rays() const { return kind == MaterialKind::mirror; }

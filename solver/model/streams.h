@@ -22,6 +22,9 @@ enum Stream : std::uint64_t {
   kFluxOfLuminaire = 0x13,
   kOpeningRaysOfPatch = 0x14,
   kPointsOfLuminaire = 0x15,
+  // Ways of luminaires and suns over mirrors and panes; the stream takes the seed's place.
+  kWaysOfLuminaire = 0x16,
+  kWaysOfSun = 0x17,
   // Spaces, by patch, luminaire or opening.
   kClosureRays = 0x21,
   kSideRays = 0x31,
@@ -33,6 +36,7 @@ enum Stream : std::uint64_t {
   kPathsOfPatch = 0x51,
   kNoisyPatches = 0x84,
   kMatrixPairs = 0xd1,
+  kEchoFactors = 0xd2,
   // Points, by number.
   kPathsOfSensor = 0x61,
   kPathsOfSample = 0x62,
@@ -66,6 +70,9 @@ enum Stream : std::uint64_t {
   kSlitGains = 0x95,
   kVariationProbe = 0xa1,
   kBfPairs = 0xb1,
+  // Panes that turn a ray back, by ray; and whether one of these is followed further.
+  kPanesOfRay = 0x88,
+  kEchoes = 0x89,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.
   kVisibilityPattern = 0x7061747465726e,
 };

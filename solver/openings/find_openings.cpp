@@ -155,13 +155,13 @@ class Judge {
     Spectrum E(0.0);
     for (const PlacedSun& sun : lights_.suns) {
       const double cosine = dot(sun.direction, n);
-      if (sun.mirror == kNoMirror && cosine > 0 && rays_.first_hit(patches_, {p, sun.direction}).escaped())
+      if (!sun.is_image() && cosine > 0 && rays_.first_hit(patches_, {p, sun.direction}).escaped())
         E += sun.normal_irradiance * cosine;
     }
     const std::size_t luminaires = lights_.luminaires.size(), step = 1 + luminaires / kFewLuminaires;
     for (std::size_t k = 0; k < luminaires; k += step) {
       const PlacedLuminaire& luminaire = lights_.luminaires[k];
-      if (luminaire.mirror != kNoMirror) continue;
+      if (luminaire.is_image()) continue;
       const ShadowSegment way = shadow_segment(luminaire, luminaire.position, p);
       if (way.is_free || rays_.visible(way.from, way.to))
         E += open_irradiance(luminaire, p, n) * static_cast<double>(step);

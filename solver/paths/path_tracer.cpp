@@ -9,6 +9,7 @@
 #include "solver/model/units.h"
 #include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 
@@ -78,9 +79,7 @@ Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, cons
       s.density > 0 ? balance_heuristic(s.density, density_of_ways(light, p, n, normalized(s.end - p))) : 1.0;
   ++rays;
   const RayScene& scene = light.problem.rays;
-  const bool by_mirror = s.mirror != kNoMirror;
-  return s.irradiance * weight *
-         (by_mirror ? scene.transmittance_by_mirror(p, s.end, s.mirror) : scene.transmittance(p, s.end));
+  return s.irradiance * weight * scene.transmittance_by_mirrors(p, s.end, s.way);
 }
 
 /// The sky by one ray through an opening. Of light that bundle rays meet too, the share that is due to these.
@@ -126,7 +125,7 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
     throughput *= way.factor;
     if (way.by_slit) through_slits *= std::min(1.0, way.factor);
     const Vec3 d = way.direction;
-    const Hit hit = problem.rays.first_hit(patches, {p, d});
+    const Hit hit = one_way(problem.rays, patches, {p, d}, random);
     ++rays;
     throughput *= hit.transmittance;
     if (hit.escaped()) {

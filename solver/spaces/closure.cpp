@@ -9,6 +9,7 @@
 #include "solver/model/streams.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 
@@ -32,9 +33,17 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
         const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(seed, kClosureRays, i));
         const Ray ray{rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
                       cosine_direction(frame, u[0], u[1])};
-        const Hit hit = rays.first_hit(patches, ray);
-        if (hit.escaped()) escapes += hit.transmittance;
-        if (hit.patch.valid()) arrives += hit.transmittance;
+        Echo echo;
+        const Hit hit = rays.first_hit(patches, ray, &echo);
+        const auto take = [&](const Hit& h) {
+          if (h.escaped()) escapes += h.transmittance;
+          if (h.patch.valid()) arrives += h.transmittance;
+        };
+        take(hit);
+        if (!echo.is_none()) {
+          RandomStream random = echo_numbers(stream_key(seed, kClosureRays, i), static_cast<std::uint64_t>(k));
+          follow_echo(rays, patches, echo, random, take);
+        }
         if (k >= kNeighbours || !hit.patch.valid()) continue;
         if (std::ranges::none_of(
                 slits, [&](const LightArea& slit) { return is_passed(slit, ray.origin, ray.direction, hit.first); }))

@@ -15,6 +15,7 @@
 #include "solver/model/streams.h"
 #include "solver/openings/openings.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/echoes.h"
 #include "solver/visibility/shadow_rays.h"
 
 namespace clerestory {
@@ -100,14 +101,24 @@ Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, in
   Seen seen;
   for (int k = 0; k < ray_count; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-    const Hit hit = problem.rays.first_hit(patches, {lifted(u[2], u[3]), cosine_direction(frame, u[0], u[1])});
-    seen.outside = seen.outside || hit.escaped();
-    if (!hit.patch.valid()) continue;
-    seen.patches.push_back(hit.patch);
-    if (spaces.is_settled(hit.patch)) return seen;
+    Echo echo;
+    const Hit hit = problem.rays.first_hit(patches, {lifted(u[2], u[3]), cosine_direction(frame, u[0], u[1])}, &echo);
+    bool settled = false;
+    const auto take = [&](const Hit& h) {
+      seen.outside = seen.outside || h.escaped();
+      if (!h.patch.valid()) return;
+      seen.patches.push_back(h.patch);
+      settled = settled || spaces.is_settled(h.patch);
+    };
+    take(hit);
+    if (!settled && !echo.is_none()) {
+      RandomStream random = echo_numbers(key, static_cast<std::uint64_t>(k));
+      follow_echo(problem.rays, patches, echo, random, take);
+    }
+    if (settled) return seen;
   }
   for (const PlacedSun& sun : problem.lights.suns) {
-    if (sun.mirror != kNoMirror) continue;  // the space is told by rays that mirrors turn
+    if (sun.is_image()) continue;  // the space is told by rays that mirrors turn
     for (int k = 0; k < 16 && !seen.sun; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key + 1);
       const Vec3 d = direction_to_sun(sun, u[2], u[3]);
@@ -139,7 +150,7 @@ Found look_for_lights(const Problem& problem, const LightSampler& emitters, std:
   const std::vector<PlacedLuminaire>& luminaires = problem.lights.luminaires;
   for (std::size_t number = i % stride; number < luminaires.size() && !found.lit; number += stride) {
     const PlacedLuminaire& luminaire = luminaires[number];
-    if (luminaire.mirror != kNoMirror) continue;
+    if (luminaire.is_image()) continue;
     found.lit = any_visible(problem.rays, 16, [&](std::uint32_t k, Vec3& from, Vec3& to) {
       const auto u = sobol4(k, key + 1);
       const Vec3 q = light_point(luminaire, points[k], u[0], u[1]);
@@ -169,14 +180,15 @@ void light_by_luminaires(const Problem& problem, std::uint64_t seed, Spaces& spa
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t number = from; number < to; ++number) {
       const PlacedLuminaire& luminaire = luminaires[number];
-      if (luminaire.mirror != kNoMirror) continue;
+      if (luminaire.is_image()) continue;
       const Beam beam = beam_of(luminaire);
       const std::uint64_t key = stream_key(seed, kLuminaireRays, number);
       for (std::size_t k = 0; k < rays_each; ++k) {
         const auto u = sobol4(static_cast<std::uint32_t>(k), key);
         const Vec3 d = direction_in(beam, u[0], u[1]), start = ray_start(luminaire, luminaire.position, d);
+        RandomStream random = echo_numbers(key, k);
         if (!intensity(luminaire, d).is_black())
-          met[number * rays_each + k] = problem.rays.first_hit(problem.patches, {start, d}).patch;
+          met[number * rays_each + k] = one_way(problem.rays, problem.patches, {start, d}, random).patch;
       }
     }
   });

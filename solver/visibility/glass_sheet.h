@@ -1,6 +1,7 @@
 #pragma once
-// How much light passes a sheet of glass, by the angle at which it comes.
+// How much light a sheet of glass passes and reflects, by the angle at which it comes.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -25,27 +26,47 @@ struct GlassSheet {
 /// would; 1 is a hole.
 GlassSheet fit_glass_sheet(double transmittance);
 
-/// Share [1] of unpolarised light that passes at cosine cos_theta to the normal, in 0..1:
-///   T = mean over both polarisations of (1 - R)^2 a / (1 - R^2 a^2),  a = internal^(1 / cos_inside),
-/// R by Fresnel, all reflections between the two faces summed without interference.
-double sheet_transmittance(const GlassSheet& sheet, double cos_theta);
+/// What becomes of light [1]; the rest is absorbed.
+struct SheetShares {
+  double transmittance = 0, reflectance = 0;
+};
 
-/// The same from a table over the cosine, by channel; within 1e-4.
+/// Of unpolarised light that comes at cosine cos_theta to the normal, in 0..1, from either side:
+///   T = mean over both polarisations of (1 - R)^2 a / (1 - R^2 a^2),  a = internal^(1 / cos_inside),
+///   and reflected the mean of R + R a T,
+/// R by Fresnel, all reflections between the two faces summed without interference.
+SheetShares sheet_shares(const GlassSheet& sheet, double cos_theta);
+
+/// The same from a table over the cosine, by channel; within 1e-4, at grazing angles 1e-3 of what is reflected.
 class GlassTable {
  public:
+  struct Shares {
+    Spectrum transmittance, reflectance;
+  };
+
   /// transmittance  at normal incidence.
   explicit GlassTable(const Spectrum& transmittance);
-  Spectrum at(double cos_theta) const {
-    const double place = std::abs(cos_theta) * kSteps;
-    const auto i = static_cast<std::size_t>(place);
-    if (i >= kSteps) return value_[kSteps];
-    const double t = place - static_cast<double>(i);
-    return value_[i] * (1 - t) + value_[i + 1] * t;
+  Spectrum transmittance(double cos_theta) const {
+    const Place at = place(cos_theta);
+    return value_[at.i].transmittance * (1 - at.t) + value_[at.i + 1].transmittance * at.t;
+  }
+  Spectrum reflectance(double cos_theta) const {
+    const Place at = place(cos_theta);
+    return value_[at.i].reflectance * (1 - at.t) + value_[at.i + 1].reflectance * at.t;
   }
 
  private:
   static constexpr std::size_t kSteps = 1024;
-  std::vector<Spectrum> value_;
+  struct Place {
+    std::size_t i;
+    double t;
+  };
+  static Place place(double cos_theta) {
+    const double steps = std::abs(cos_theta) * kSteps;
+    const std::size_t i = std::min(static_cast<std::size_t>(steps), kSteps - 1);
+    return {i, std::min(steps - static_cast<double>(i), 1.0)};
+  }
+  std::vector<Shares> value_;
 };
 
 }  // namespace clerestory

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
@@ -11,6 +13,8 @@
 #include "solver/geometry/triangle.h"
 #include "solver/model/coordinate_grid.h"
 #include "solver/model/parallel.h"
+#include "solver/model/streams.h"
+#include "solver/model/units.h"
 #include "solver/visibility/embree_device.h"
 #include "solver/visibility/fine_rays.h"
 #include "solver/visibility/glass_sheet.h"
@@ -20,10 +24,11 @@ namespace clerestory {
 namespace {
 
 constexpr int kMostReflections = 64;     // of one ray; what is left is lost
-constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of luminaires
+constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of lights; and of glass
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kLift = 5e-7;       // of the diameter: a few units in the last place at the rim of the scene
-constexpr double kFineLift = 1e-12;  // of the diameter: far above double's rounding, far below the coordinates' grid
+constexpr double kLift = 5e-7;          // of the diameter: a few units in the last place at the rim of the scene
+constexpr double kPlaceInPlane = 2e-6;  // of the diameter: how far from its plane a mirror is looked for
+constexpr double kFineLift = 1e-12;     // of the diameter: far above double's rounding, far below the coordinates' grid
 
 /// One Embree scene over some triangles of the PatchSet; primitive k is triangle of_primitive[k].
 struct Surfaces {
@@ -116,6 +121,48 @@ RTCRay16 ray16(const SegmentPacket& s, std::uint16_t active, int* valid) {
   return packet;
 }
 
+/// Chooses one of the panes that a ray passes, each in proportion to what it turns back.
+class EchoChoice {
+ public:
+  EchoChoice(const Ray& ray, Echo* echo) : ray_(ray), echo_(echo) {}
+  explicit operator bool() const { return echo_ != nullptr; }
+
+  /// The next pane turns this share back; from there the echo goes along `ray`.
+  void offer(std::uint32_t plane, const Spectrum& share, const Ray& ray) {
+    const double weight = luminous_mean(share);
+    if (!(weight > 0)) return;
+    all_ += weight;
+    if (weight < all_) {
+      if (!(random_number() * all_ < weight)) return;
+    }
+    chosen_ = weight, *echo_ = {plane, share, ray};
+  }
+  /// After the last pane.
+  void finish() {
+    if (echo_ && chosen_ > 0) echo_->share *= all_ / chosen_;
+  }
+
+ private:
+  /// Its key is the ray: the same ray always has the same echo.
+  double random_number() {
+    if (!random_) random_.emplace(key_of(ray_, kPanesOfRay));
+    return random_->uniform();
+  }
+
+  const Ray& ray_;
+  Echo* echo_;
+  double all_ = 0, chosen_ = 0;
+  std::optional<RandomStream> random_;
+};
+
+/// Who is told of the panes on one part of a ray's way.
+struct PanesOnLeg {
+  EchoChoice* choice = nullptr;  ///< null: nobody
+  Spectrum so_far{1.0};          ///< what is left of the ray where the leg starts
+  double lift_share = 1;
+  bool is_first = true;  ///< no mirror comes before it
+};
+
 }  // namespace
 
 struct RayScene::Impl {
@@ -126,12 +173,13 @@ struct RayScene::Impl {
   struct Mirror {
     Vec3 normal;
     double offset;        ///< of its own plane
-    std::uint32_t plane;  ///< kMostPlanes: of none
+    std::uint32_t plane;  ///< kNoPlane: of none
     Spectrum reflectance;
   };
   std::vector<Mirror> mirrors;
   std::vector<std::uint32_t> mirror_of_triangle;  ///< number in `mirrors` or kNone; empty without mirrors
   std::vector<MirrorPlane> planes;
+  std::vector<std::uint32_t> glass_plane;  ///< by triangle; empty without glass
   static constexpr std::uint32_t kNone = 0xffffffff;
   double diameter = 0;
   std::vector<Vec3> vertices;  ///< in double, for what float cannot tell
@@ -139,24 +187,68 @@ struct RayScene::Impl {
   TightPlaces tight;
   std::optional<FineRays> fine;  ///< when any place is tight
 
+  Vec3 corner(TriangleId t, std::size_t k) const { return vertices[corners[t][k]]; }
+  Vec3 unit_normal(TriangleId t) const {
+    return normalized(cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)));
+  }
+  void add_to_plane(std::uint32_t plane, TriangleId t) {
+    for (std::size_t k = 0; k < 3; ++k) planes[plane].add(corner(t, k));
+  }
+
   void find_mirrors(const PatchSet& patches) {
     for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
       if (!patches.front_material(TriangleId{t}).turns_rays()) continue;
-      const auto& c = patches.corners[t];
-      const Vec3 a = patches.vertices[c[0]];
-      const Vec3 n = normalized(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a));
+      const Vec3 a = corner(TriangleId{t}, 0), n = unit_normal(TriangleId{t});
       if (!(length(n) > 0.5)) continue;  // without area
       if (mirror_of_triangle.empty()) mirror_of_triangle.assign(patches.triangle_count(), kNone);
       const auto same = [&](const MirrorPlane& plane) {
-        return length(cross(plane.normal, n)) < 1e-6 && std::abs(dot(plane.normal, a) - plane.offset) < 1e-6 * diameter;
+        return length(cross(plane.normal, n)) < 1e-6 && std::abs(plane.height(a)) < 1e-6 * diameter;
       };
       auto plane = static_cast<std::size_t>(std::find_if(planes.begin(), planes.end(), same) - planes.begin());
-      if (plane == planes.size() && plane < kMostPlanes) planes.push_back({n, dot(n, a)});
+      if (plane == planes.size() && plane < kMostPlanes) planes.push_back(mirror_plane(n, dot(n, a), false));
       plane = std::min(plane, kMostPlanes);
       mirror_of_triangle[t] = static_cast<std::uint32_t>(mirrors.size());
-      const Vec3 normal = plane < planes.size() ? planes[plane].normal : n;
-      mirrors.push_back({normal, dot(normal, a), static_cast<std::uint32_t>(plane),
+      const bool shows = plane < planes.size();
+      const Vec3 normal = shows ? planes[plane].normal : n;
+      mirrors.push_back({normal, dot(normal, a), shows ? static_cast<std::uint32_t>(plane) : kNoPlane,
                          patches.front_material(TriangleId{t}).reflectance});
+      if (shows) add_to_plane(mirrors.back().plane, TriangleId{t});
+    }
+  }
+
+  /// The planes of panes, those of largest area.
+  void find_glass_planes(const PatchSet& patches) {
+    struct Panes {
+      double area = 0;
+      std::vector<TriangleId> triangles;
+    };
+    // Planes that rounding tells apart are two: their panes are, too.
+    std::map<std::array<long, 4>, Panes> found;
+    for (const std::uint32_t t : glass.of_primitive) {
+      const TriangleId triangle{t};
+      Vec3 n = unit_normal(triangle);
+      const double area =
+          length(cross(corner(triangle, 1) - corner(triangle, 0), corner(triangle, 2) - corner(triangle, 0))) / 2;
+      if (!(length(n) > 0.5)) continue;
+      if (n.x < -1e-5 || (n.x < 1e-5 && (n.y < -1e-5 || (n.y < 1e-5 && n.z < 0)))) n = -n;
+      const double offset = dot(n, corner(triangle, 0));
+      Panes& panes = found[{std::lround(n.x * 1e5), std::lround(n.y * 1e5), std::lround(n.z * 1e5),
+                            std::lround(offset / (2e-6 * diameter))}];
+      panes.area += area;
+      panes.triangles.push_back(triangle);
+    }
+    std::vector<const Panes*> by_area;
+    for (const auto& [key, panes] : found) by_area.push_back(&panes);
+    std::ranges::stable_sort(by_area, std::greater<>(), [](const Panes* p) { return p->area; });
+    glass_plane.assign(glass.of_primitive.empty() ? 0 : patches.triangle_count(), kNoPlane);
+    for (const Panes* panes : std::span(by_area).first(std::min(kMostPlanes, by_area.size()))) {
+      const Vec3 n = unit_normal(panes->triangles[0]);
+      const auto number = static_cast<std::uint32_t>(planes.size());
+      planes.push_back(mirror_plane(n, dot(n, corner(panes->triangles[0], 0)), true));
+      for (const TriangleId t : panes->triangles) {
+        glass_plane[t] = number;
+        add_to_plane(number, t);
+      }
     }
   }
 
@@ -174,8 +266,8 @@ struct RayScene::Impl {
   }
 
   /// Of one ray up to the first surface, be it a mirror.
-  Hit one_leg(const PatchSet& patches, const Ray& ray) const {
-    if (tight.contains(ray.origin)) return fine_leg(patches, ray);
+  Hit one_leg(const PatchSet& patches, const Ray& ray, PanesOnLeg panes) const {
+    if (tight.contains(ray.origin)) return fine_leg(patches, ray, panes);
     auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
     rtcIntersect1(opaque.handle, &c, &r);
@@ -183,16 +275,17 @@ struct RayScene::Impl {
     hit.distance = hit.first = double{r.ray.tfar};
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       hit.triangle = TriangleId{opaque.of_primitive[r.hit.primID]};
-      if (lands_tight(hit, ray)) return fine_leg(patches, ray);
+      if (lands_tight(hit, ray)) return fine_leg(patches, ray, panes);
       const float along = r.hit.Ng_x * r.ray.dir_x + r.hit.Ng_y * r.ray.dir_y + r.hit.Ng_z * r.ray.dir_z;
       hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{r.hit.u}, double{r.hit.v});
     }
-    if (!glass.of_primitive.empty()) hit.transmittance = through_glass(ray.origin, ray.direction, hit.distance);
+    if (!glass.of_primitive.empty())
+      hit.transmittance = through_glass(ray.origin, ray.direction, hit.distance, false, panes);
     return hit;
   }
 
   /// The same where float cannot tell what is first.
-  Hit fine_leg(const PatchSet& patches, const Ray& ray) const {
+  Hit fine_leg(const PatchSet& patches, const Ray& ray, PanesOnLeg panes) const {
     Hit hit;
     hit.distance = hit.first = std::numeric_limits<double>::infinity();
     if (const auto met = fine->first(ray.origin, ray.direction, hit.distance)) {
@@ -200,12 +293,13 @@ struct RayScene::Impl {
       hit.triangle = met->triangle;
       hit.patch = patches.patch_at(hit.triangle, met->front ? kFront : kBack, met->u, met->v);
     }
-    if (!glass.of_primitive.empty()) hit.transmittance = through_fine_glass(ray.origin, ray.direction, hit.distance);
+    if (!glass.of_primitive.empty())
+      hit.transmittance = through_glass(ray.origin, ray.direction, hit.distance, true, panes);
     return hit;
   }
 
   /// Goes on from a hit as long as it is on a mirror. share: of the lift.
-  void follow_mirrors(const PatchSet& patches, const Ray& first, double share, Hit& hit) const {
+  void follow_mirrors(const PatchSet& patches, const Ray& first, double share, Hit& hit, EchoChoice* choice) const {
     Ray ray = first;
     for (int k = 0; k < kMostReflections; ++k) {
       const Mirror* mirror = mirror_at(hit.triangle);
@@ -216,7 +310,8 @@ struct RayScene::Impl {
       ray = {off_surface(x, n, share), ray.direction - mirror->normal * (2 * along)};
       const Spectrum so_far = hit.transmittance * mirror->reflectance;
       const double to_first = hit.first;
-      hit = one_leg(patches, ray);
+      hit = one_leg(patches, ray, {choice, so_far, share, false});
+      hit.plane = k == 0 ? mirror->plane : kNoPlane;
       hit.first = to_first;
       hit.transmittance *= so_far;
       hit.reflected = true;
@@ -247,30 +342,96 @@ struct RayScene::Impl {
     return met;
   }
 
-  /// Product of the transmittances of the glass met before `far`, each at the angle at which it is met. direction:
-  /// unit. Neither end is in a tight place.
-  Spectrum through_glass(const Vec3& origin, const Vec3& direction, double far) const {
-    Spectrum share(1.0);
+  /// Calls met(distance, triangle) for the panes before `far`, from near to far. direction: unit.
+  template <class Met>
+  void walk_glass(const Vec3& origin, const Vec3& direction, double far, bool finely, const Met& met) const {
+    double done = -1;
     auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     const float far_t = static_cast<float>(far), step = static_cast<float>(1e-6 * diameter);
-    for (float near_t = 0; near_t < far_t;) {
+    for (float near_t = 0; near_t < far_t && !finely;) {
       RTCRayHit r = ray_hit(origin, direction, near_t, far_t);
       rtcIntersect1(glass.handle, &c, &r);
-      if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
-      const TriangleId met{glass.of_primitive[r.hit.primID]};
-      if (tight.is_tight(met)) return through_fine_glass(origin, direction, far);
-      const Vec3 n(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
-      share *= glass_kinds[kind_of_glass[met]].at(dot(n, direction) / length(n));
+      if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+      const TriangleId pane{glass.of_primitive[r.hit.primID]};
+      finely = tight.is_tight(pane);
+      if (finely) break;
+      done = double{r.ray.tfar};
+      met(done, pane);
       near_t = std::max(r.ray.tfar + step, std::nextafter(r.ray.tfar, kInfinity));  // panes count once at shared edges
     }
+    if (!finely) return;
+    for (const FineRays::Met& pane : fine->glass(origin, direction, far))
+      if (pane.distance > done + double{step} || done < 0) met(pane.distance, pane.triangle);
+  }
+
+  const GlassTable& glass_of(TriangleId pane) const { return glass_kinds[kind_of_glass[pane]]; }
+
+  /// Product of the transmittances of the glass met before `far`, each at the angle at which it is met. direction:
+  /// unit. finely: an end is in a tight place.
+  Spectrum through_glass(const Vec3& origin, const Vec3& direction, double far, bool finely,
+                         const PanesOnLeg& panes = {}) const {
+    Spectrum share(1.0);
+    walk_glass(origin, direction, far, finely, [&](double distance, TriangleId pane) {
+      const double cosine = dot(unit_normal(pane), direction);
+      if (panes.choice)
+        panes.choice->offer(panes.is_first ? glass_plane[pane] : kNoPlane,
+                            panes.so_far * share * glass_of(pane).reflectance(cosine),
+                            turned(origin, direction, distance, unit_normal(pane), corner(pane, 0), panes.lift_share));
+      share *= glass_of(pane).transmittance(cosine);
+    });
     return share;
   }
-  /// The same by double precision.
-  Spectrum through_fine_glass(const Vec3& origin, const Vec3& direction, double far) const {
-    Spectrum share(1.0);
-    for (const FineRays::Met& met : fine->glass(origin, direction, far))
-      share *= glass_kinds[kind_of_glass[met.triangle]].at(dot(fine->normal(met.triangle), direction));
-    return share;
+
+  /// The ray that a pane or mirror turns: it starts in the very plane, lifted off it; a ray in float hits it only
+  /// nearly.
+  Ray turned(const Vec3& origin, const Vec3& direction, double distance, const Vec3& normal, const Vec3& in_plane,
+             double lift_share) const {
+    const double along = dot(normal, direction);
+    const Vec3 met = origin + direction * distance, x = met - normal * dot(normal, met - in_plane);
+    return {off_surface(x, along < 0 ? normal : -normal, lift_share), direction - normal * (2 * along)};
+  }
+  /// What a mirror or pane of that plane turns of light that comes along `direction` to the place x of it, seen from
+  /// where `up` points; black where there is none.
+  Spectrum turned_at(std::uint32_t plane, const Vec3& x, const Vec3& up, const Vec3& direction) const {
+    const double reach = kPlaceInPlane * diameter;
+    const Vec3 from = x + up * reach;
+    if (planes[plane].is_glass) {
+      Spectrum share(0.0);
+      walk_glass(from, -up, 2 * reach, tight.contains(x), [&](double, TriangleId pane) {
+        if (glass_plane[pane] == plane) share = glass_of(pane).reflectance(dot(up, direction));
+      });
+      return share;
+    }
+    TriangleId met;
+    if (tight.contains(x)) {
+      if (const auto found = fine->first(from, -up, 2 * reach)) met = found->triangle;
+    } else {
+      auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+      RTCRayHit r = ray_hit(from, -up, 0, static_cast<float>(2 * reach));
+      rtcIntersect1(opaque.handle, &c, &r);
+      if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) met = TriangleId{opaque.of_primitive[r.hit.primID]};
+    }
+    const Mirror* mirror = mirror_at(met);
+    return mirror && mirror->plane == plane ? mirror->reflectance : Spectrum(0.0);
+  }
+
+  struct Surface {
+    double distance = std::numeric_limits<double>::infinity();
+    TriangleId triangle;
+  };
+  /// First opaque surface.
+  Surface first_surface(const Ray& ray) const {
+    const auto finely = [&]() -> Surface {
+      const auto met = fine->first(ray.origin, ray.direction, std::numeric_limits<double>::infinity());
+      return met ? Surface{met->distance, met->triangle} : Surface{};
+    };
+    if (tight.contains(ray.origin)) return finely();
+    auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
+    rtcIntersect1(opaque.handle, &c, &r);
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    const TriangleId met{opaque.of_primitive[r.hit.primID]};
+    return tight.is_tight(met) ? finely() : Surface{double{r.ray.tfar}, met};
   }
 
   /// Whether nothing opaque blocks a segment of which an end lies in a tight place.
@@ -293,6 +454,7 @@ RayScene::RayScene(const PatchSet& patches) {
   });
   impl->tabulate_glass(patches);
   impl->find_mirrors(patches);
+  impl->find_glass_planes(patches);
   impl->tight = TightPlaces(patches, kLift * impl->diameter);
   if (impl->tight.any()) impl->fine.emplace(patches, impl->vertices, impl->corners, impl->diameter);
   impl_ = std::move(impl);
@@ -305,6 +467,10 @@ RayScene::~RayScene() = default;
 
 bool RayScene::has_mirrors() const { return !impl_->mirrors.empty(); }
 const std::vector<MirrorPlane>& RayScene::mirrors() const { return impl_->planes; }
+std::uint32_t RayScene::plane_of(TriangleId t) const {
+  if (const Impl::Mirror* mirror = has_mirrors() ? impl_->mirror_at(t) : nullptr) return mirror->plane;
+  return has_glass() ? impl_->glass_plane[t] : kNoPlane;
+}
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }
 Vec3 RayScene::off_surface(const Vec3& p, const Vec3& n) const { return impl_->off_surface(p, n, lift_share_); }
@@ -334,7 +500,8 @@ Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
   return at;
 }
 
-void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const {
+void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits,
+                          std::span<Echo> echoes) const {
   auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   alignas(64) int valid[16];
   RTCRayHit16 packet;
@@ -362,11 +529,16 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       if (packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
         hit.triangle = TriangleId{impl_->opaque.of_primitive[packet.hit.primID[k]]};
       const Ray& sent = rays[first + k];
+      Echo* echo = echoes.empty() ? nullptr : &echoes[first + k];
+      if (echo) *echo = {};
+      EchoChoice choice(sent, echo);
+      const PanesOnLeg panes{choice ? &choice : nullptr, Spectrum(1.0), lift_share_};
       if (has_tight_places() && (k == 0 || sent.origin != rays[first + k - 1].origin))
         starts_tight = is_tight(sent.origin);
       if (starts_tight || (!hit.escaped() && impl_->lands_tight(hit, sent))) {
-        hit = impl_->fine_leg(patches, rays[first + k]);
-        if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], lift_share_, hit);
+        hit = impl_->fine_leg(patches, sent, panes);
+        if (has_mirrors()) impl_->follow_mirrors(patches, sent, lift_share_, hit, panes.choice);
+        choice.finish();
         continue;
       }
       if (!hit.escaped()) {
@@ -375,36 +547,25 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
         hit.patch = patches.patch_at(hit.triangle, along < 0 ? kFront : kBack, double{packet.hit.u[k]},
                                      double{packet.hit.v[k]});
       }
-      if ((by_glass >> k) & 1) {
-        const Ray& ray = rays[first + k];
-        hit.transmittance = impl_->through_glass(ray.origin, ray.direction, hit.distance);
-      }
-      if (has_mirrors()) impl_->follow_mirrors(patches, rays[first + k], lift_share_, hit);
+      if ((by_glass >> k) & 1)
+        hit.transmittance = impl_->through_glass(sent.origin, sent.direction, hit.distance, false, panes);
+      if (has_mirrors()) impl_->follow_mirrors(patches, sent, lift_share_, hit, panes.choice);
+      choice.finish();
     }
   }
 }
 
-Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray) const {
-  Hit hit = impl_->one_leg(patches, ray);
-  if (has_mirrors()) impl_->follow_mirrors(patches, ray, lift_share_, hit);
+Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray, Echo* echo) const {
+  if (echo) *echo = {};
+  EchoChoice choice(ray, has_glass() ? echo : nullptr);
+  const PanesOnLeg panes{choice ? &choice : nullptr, Spectrum(1.0), lift_share_};
+  Hit hit = impl_->one_leg(patches, ray, panes);
+  if (has_mirrors()) impl_->follow_mirrors(patches, ray, lift_share_, hit, panes.choice);
+  choice.finish();
   return hit;
 }
 
-double RayScene::first_surface(const Ray& ray) const {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  const auto finely = [&] {
-    const auto met = impl_->fine->first(ray.origin, ray.direction, kFar);
-    return met ? met->distance : kFar;
-  };
-  if (is_tight(ray.origin)) return finely();
-  auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  RTCRayHit r = ray_hit(ray.origin, ray.direction, 0, kInfinity);
-  rtcIntersect1(impl_->opaque.handle, &c, &r);
-  if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
-      impl_->tight.is_tight(TriangleId{impl_->opaque.of_primitive[r.hit.primID]}))
-    return finely();
-  return double{r.ray.tfar};
-}
+double RayScene::first_surface(const Ray& ray) const { return impl_->first_surface(ray).distance; }
 
 std::uint16_t RayScene::meets_glass(const SegmentPacket& s, std::uint16_t active) const {
   if (!has_glass() || !active) return 0;
@@ -450,29 +611,52 @@ Spectrum RayScene::transmittance(const Vec3& from, const Vec3& to) const {
   return visible(from, to) ? glass_transmittance(from, to) : Spectrum(0.0);
 }
 
-Spectrum RayScene::transmittance_by_mirror(const Vec3& from, const Vec3& image, std::uint32_t mirror) const {
-  const MirrorPlane& plane = impl_->planes[mirror];
-  if (!((dot(plane.normal, from) - plane.offset) * (dot(plane.normal, image) - plane.offset) < 0)) return Spectrum(0.0);
-  const auto finely = [&] {
-    const auto met = impl_->fine->first(from, image - from, 1);
-    return met ? met->triangle : TriangleId{};
-  };
-  TriangleId first;
-  if (is_tight(from)) {
-    first = finely();
-  } else {
-    auto c = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-    RTCRayHit r = ray_hit(from, image - from, 0, 1);
-    rtcIntersect1(impl_->opaque.handle, &c, &r);
-    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) first = TriangleId{impl_->opaque.of_primitive[r.hit.primID]};
-    if (impl_->tight.is_tight(first)) first = finely();
+Spectrum RayScene::transmittance_by_mirrors(const Vec3& from, const Vec3& image, const MirrorWay& way) const {
+  // Where the way crosses the planes, from the last to the first: most ways miss one.
+  std::array<Vec3, MirrorWay::kMost> crossing;
+  std::array<bool, MirrorWay::kMost> above;
+  Vec3 start = from, end = image;
+  for (std::size_t k = way.count; k-- > 0;) {
+    const MirrorPlane& plane = impl_->planes[way.plane[k]];
+    const double height = plane.height(start), beyond = plane.height(end);
+    if (!(height * beyond < 0)) return Spectrum(0.0);
+    crossing[k] = start + (end - start) * (height / (height - beyond));
+    if (!plane.is_within(crossing[k], lift())) return Spectrum(0.0);
+    above[k] = height > 0;
+    start = crossing[k], end = plane.image_of(end);
   }
-  const auto* met = impl_->mirror_at(first);
-  if (!met || met->plane != mirror) return Spectrum(0.0);
-  const double height = dot(met->normal, from) - met->offset, beyond = dot(met->normal, image) - met->offset;
-  const Vec3 x = from + (image - from) * (height / (height - beyond));
-  const Vec3 lifted = off_surface(x, height > 0 ? met->normal : -met->normal);
-  return met->reflectance * glass_transmittance(from, lifted) * transmittance(lifted, plane.image_of(image));
+  Spectrum share(1.0);
+  start = from;
+  for (std::size_t k = way.count; k-- > 0;) {
+    const MirrorPlane& plane = impl_->planes[way.plane[k]];
+    const Vec3 up = above[k] ? plane.normal : -plane.normal, x = off_surface(crossing[k], up);
+    share *= impl_->turned_at(way.plane[k], crossing[k], up, normalized(crossing[k] - start));
+    if (share.is_black()) return share;
+    share *= transmittance(start, x);
+    if (share.is_black()) return share;
+    start = x;
+  }
+  return share * transmittance(start, end);
+}
+
+std::vector<Turn> RayScene::turns(const Ray& ray) const {
+  std::vector<Turn> found;
+  Spectrum share(1.0);
+  const auto turned = [&](double distance, TriangleId met) {
+    return impl_->turned(ray.origin, ray.direction, distance, impl_->unit_normal(met), impl_->corner(met, 0),
+                         lift_share_);
+  };
+  const Impl::Surface end = impl_->first_surface(ray);
+  impl_->walk_glass(
+      ray.origin, ray.direction, end.distance, is_tight(ray.origin), [&](double distance, TriangleId pane) {
+        const GlassTable& kind = impl_->glass_of(pane);
+        const double cosine = dot(impl_->unit_normal(pane), ray.direction);
+        found.push_back({impl_->glass_plane[pane], share * kind.reflectance(cosine), turned(distance, pane)});
+        share *= kind.transmittance(cosine);
+      });
+  if (const Impl::Mirror* mirror = has_mirrors() ? impl_->mirror_at(end.triangle) : nullptr)
+    found.push_back({mirror->plane, share * mirror->reflectance, turned(end.distance, end.triangle)});
+  return found;
 }
 
 Spectrum RayScene::glass_transmittance(const Vec3& from, const Vec3& to) const {
@@ -480,8 +664,7 @@ Spectrum RayScene::glass_transmittance(const Vec3& from, const Vec3& to) const {
   const double distance = length(to - from);
   if (!(distance > 0)) return Spectrum(1.0);
   const Vec3 d = (to - from) / distance;
-  return is_tight(from) || is_tight(to) ? impl_->through_fine_glass(from, d, distance)
-                                        : impl_->through_glass(from, d, distance);
+  return impl_->through_glass(from, d, distance, is_tight(from) || is_tight(to));
 }
 
 }  // namespace clerestory

@@ -2,19 +2,31 @@
 // Rays against the triangles of a PatchSet. Embree stays inside.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "solver/model/patch_set.h"
+#include "solver/model/random_stream.h"
+#include "solver/visibility/mirror_planes.h"
 
 namespace clerestory {
+
+inline constexpr std::uint32_t kNoPlane = 0xffffffff;
 
 struct Ray {
   Vec3 origin;     ///< already off its surface, see RayScene::off_surface() [m]
   Vec3 direction;  ///< unit
 };
+
+/// Key of the random numbers of `stream` that belong to a ray: the same for the same ray.
+inline std::uint64_t key_of(const Ray& ray, std::uint64_t stream) {
+  for (const Vec3* v : {&ray.origin, &ray.direction})
+    for (const double x : {v->x, v->y, v->z}) stream = mix_bits(stream ^ std::bit_cast<std::uint64_t>(x)) + 1;
+  return stream;
+}
 
 /// What a ray met first, mirrors apart.
 struct Hit {
@@ -23,9 +35,10 @@ struct Hit {
   double distance = 0;          ///< along the unit direction [m]
   Spectrum transmittance{1.0};  ///< of glass and mirrors on the way
 
-  double first = 0;        ///< distance to the first surface, be it a mirror [m]
-  bool reflected = false;  ///< by mirrors on the way
-  Ray leg;                 ///< when reflected: the last part of the way; `distance` is its length then
+  double first = 0;                ///< distance to the first surface, be it a mirror [m]
+  bool reflected = false;          ///< by mirrors on the way, or by glass
+  std::uint32_t plane = kNoPlane;  ///< in which, when that is one: its number in RayScene::mirrors()
+  Ray leg;                         ///< when reflected: the last part of the way; `distance` is its length then
 
   bool escaped() const { return !triangle.valid(); }
   /// Direction [unit] in which `ray` arrived here, and where that is.
@@ -33,15 +46,22 @@ struct Hit {
   Vec3 position(const Ray& ray) const { return (reflected ? leg.origin : ray.origin) + direction(ray) * distance; }
 };
 
-/// A plane with mirrors in it.
-struct MirrorPlane {
-  Vec3 normal;        ///< unit
-  double offset = 0;  ///< dot(normal, x) = offset in the plane [m]
+/// What panes of glass turn back of a ray that goes on through them, by one of these panes, chosen at random where
+/// there are several.
+struct Echo {
+  std::uint32_t plane = kNoPlane;  ///< of the pane; kNoPlane where a mirror comes before it, too
+  Spectrum share{0.0};  ///< of the light that comes along it in what the ray brings; over the chance of the choice
+  Ray ray;              ///< from the pane
 
-  Vec3 image_of(const Vec3& x) const { return x - normal * (2 * (dot(normal, x) - offset)); }
-  Vec3 image_of_direction(const Vec3& d) const { return d - normal * (2 * dot(normal, d)); }
+  bool is_none() const { return share.is_black(); }
 };
 
+/// What turns a ray on its way: a pane that it goes on through, or the mirror that it ends on.
+struct Turn {
+  std::uint32_t plane;  ///< its number in RayScene::mirrors(), or kNoPlane
+  Spectrum share;       ///< of the ray that goes on along `ray`
+  Ray ray;
+};
 /// Sixteen segments for one packet, as separate coordinates; both ends already off their surfaces.
 struct SegmentPacket {
   alignas(64) std::array<float, 16> from_x, from_y, from_z, to_x, to_y, to_z;
@@ -56,9 +76,10 @@ struct SegmentPacket {
   }
 };
 
-/// Read-only, thread safe. Opaque triangles block; glass takes its share, by the
-/// angle (glass_sheet.h); mirrors turn first_hit() into another direction, up to 64 times. Knows triangles only, so it
-/// stays valid when make_patches() changes which sides take part.
+/// Read-only, thread safe. Opaque triangles block; glass lets its share pass, by the
+/// angle (glass_sheet.h), and turns another back, which goes on as an Echo (echoes.h); mirrors turn first_hit() into
+/// another direction, up to 64 times. Knows triangles only, so it stays valid when make_patches() changes which sides
+/// take part.
 class RayScene {
  public:
   /// Deterministic for any thread count: the tree is built by one thread.
@@ -68,9 +89,12 @@ class RayScene {
   ~RayScene();
 
   /// First surface met, `patches` telling which side takes part as which patch.
-  Hit first_hit(const PatchSet& patches, const Ray& ray) const;
+  /// echo: null, or set to what glass on the way turns back.
+  Hit first_hit(const PatchSet& patches, const Ray& ray, Echo* echo = nullptr) const;
   /// The same for rays that go nearly the same way, in packets of 16; scattered ones are faster one by one.
-  void first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits) const;
+  /// echoes: empty, or one a ray.
+  void first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits,
+                  std::span<Echo> echoes = {}) const;
 
   /// Distance to the first surface that is not glass; infinite when there is none [m].
   double first_surface(const Ray& ray) const;
@@ -89,14 +113,19 @@ class RayScene {
   /// Share that glass lets through between two points that see each other; 1 without glass.
   Spectrum glass_transmittance(const Vec3& from, const Vec3& to) const;
 
-  /// Share of light that gets to `from` by that mirror, from a light whose image behind it is at `image`: 0 when the
-  /// way meets no such mirror or something blocks it before or after.
-  Spectrum transmittance_by_mirror(const Vec3& from, const Vec3& image, std::uint32_t mirror) const;
+  /// Share of light that gets to `from` over mirrors and panes of those planes, from a light whose image is at `image`:
+  /// 0 when the way misses one of them or something blocks it.
+  Spectrum transmittance_by_mirrors(const Vec3& from, const Vec3& image, const MirrorWay& way) const;
+  /// All that turns a ray, from near to far, the way to it included.
+  std::vector<Turn> turns(const Ray& ray) const;
 
   bool has_glass() const;
   bool has_mirrors() const;
-  /// The planes of mirrors, no more than 64 of them: rays are reflected by all, luminaires have images in these.
+  /// The planes of mirrors, no more than 64 of them, then those of glass, the 64 of largest area: rays are reflected by
+  /// all, lights have images in these.
   const std::vector<MirrorPlane>& mirrors() const;
+  /// The number there of a mirror's or pane's plane; kNoPlane: it has none.
+  std::uint32_t plane_of(TriangleId t) const;
 
   /// Where a ray starts or ends at the place p of a surface with unit normal n on the ray's side: lifted so far that
   /// rounding cannot put it behind the surface, and never so far that it passes another. That is lift() where no other

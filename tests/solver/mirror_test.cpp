@@ -35,13 +35,14 @@ TEST(Mirror, TurnsARayAndTakesItsShareAtEachReflection) {
   EXPECT_EQ(patches.patch_count(), 2u) << "mirrors and glass are no receivers";
   const RayScene rays(patches);
   ASSERT_TRUE(rays.has_mirrors());
-  EXPECT_EQ(rays.mirrors().size(), 2u);
+  ASSERT_EQ(rays.mirrors().size(), 3u);
+  EXPECT_TRUE(!rays.mirrors()[0].is_glass && !rays.mirrors()[1].is_glass && rays.mirrors()[2].is_glass);
   // From z = 0.75 upwards by 45 degrees: mirrors at x = 0.25, 1.25, 2.25, 3.25, glass between them, out at x = 4.25.
   const Ray ray{{0, 0.1, 0.75}, normalized(Vec3{1, 0, 1})};
   const std::array<Ray, 2> both{ray, ray};
   std::array<Hit, 2> hits;
   rays.first_hits(patches, both, hits);
-  const double glass = GlassTable(Spectrum(0.65)).at(std::sqrt(0.5))[0];
+  const double glass = GlassTable(Spectrum(0.65)).transmittance(std::sqrt(0.5))[0];
   for (const Hit& hit : {rays.first_hit(patches, ray), hits[0], hits[1]}) {
     EXPECT_TRUE(hit.escaped());
     EXPECT_TRUE(hit.reflected);
@@ -106,6 +107,30 @@ TEST(Mirror, ShowsAGlowingPatchAsItsImage) {
       0.01);
   const PathEstimate paths = trace_paths_at_point(Illumination(problem), p, n, 1, 65'536, traced);
   EXPECT_NEAR(paths.E[0], exact, 4 * paths.std_error[0]);
+}
+
+TEST(Mirror, ShowsASmallGlowingPatchToShadowRays) {
+  // In the same way a lamp of 0.1 m2, which 256 rays in a mirror would meet or not.
+  PatchBuilder b(0.0);
+  b.material(0.0, 100).rectangle({0, 0, 1}, {0, 0.3, 0}, {0.3, 0, 0});
+  b.material(0.0).rectangle({-30, -30, 3}, {0, 60, 0}, {60, 0, 0});
+  b.mirror(kRho).rectangle({-30, -30, 0}, {60, 0, 0}, {0, 60, 0});
+  const PatchSet patches = b.build();
+  const RayScene rays(patches);
+  const Lights none;
+  const Problem problem{patches, rays, none};
+  const Illumination light = gather_illumination(problem, patches.M);
+  const Vec3 n{0, 0, -1};
+  unsigned long long traced = 0;
+  for (const double x : {0.8, 1.5, 3.0}) {
+    const Vec3 p{x, 0.2, 1};
+    const std::array<Vec3, 4> image{Vec3{0, 0, -1}, Vec3{0.3, 0, -1}, Vec3{0.3, 0.3, -1}, Vec3{0, 0.3, -1}};
+    const double exact = kRho * 100 * point_to_polygon(p, n, image);
+    for (const std::uint64_t seed : {1u, 2u, 3u})
+      EXPECT_NEAR(
+          gather_point(light, p, n, GatherPattern(test::gather_quality({16, 256, 256}), seed), traced).E[0] / exact, 1,
+          0.02);
+  }
 }
 
 /// A room with a glowing wall, a point lamp, and a mirror for a wall.

@@ -27,7 +27,7 @@ double diffuse_transmittance(const GlassSheet& sheet) {
   double sum = 0;
   for (int k = 0; k < kSteps; ++k) {
     const double c = (k + 0.5) / kSteps;
-    sum += 2 * c * sheet_transmittance(sheet, c) / kSteps;
+    sum += 2 * c * sheet_shares(sheet, c).transmittance / kSteps;
   }
   return sum;
 }
@@ -35,18 +35,18 @@ double diffuse_transmittance(const GlassSheet& sheet) {
 TEST(GlassSheet, PassesWhatIsGivenAtNormalIncidence) {
   for (const double T : {0.0, 1e-9, 0.1, 0.65, 0.88, 0.918, kClearGlass, 0.92, 0.99, 1.0}) {
     const GlassSheet sheet = fit_glass_sheet(T);
-    EXPECT_NEAR(sheet_transmittance(sheet, 1), T, 1e-14);
+    EXPECT_NEAR(sheet_shares(sheet, 1).transmittance, T, 1e-14);
     EXPECT_LE(sheet.internal, 1);
     EXPECT_LE(sheet.index, kGlassIndex + 1e-12);
     double before = 0;
     for (double c = 0; c <= 1; c += 1.0 / 64) {
-      const double passes = sheet_transmittance(sheet, c);
+      const double passes = sheet_shares(sheet, c).transmittance;
       EXPECT_GE(passes, before) << T << " at cosine " << c;  // the steeper the less
       before = passes;
     }
-    EXPECT_EQ(sheet_transmittance(sheet, 0), T < 1 ? 0 : 1);
+    EXPECT_EQ(sheet_shares(sheet, 0).transmittance, T < 1 ? 0 : 1);
   }
-  for (const double c : {0.0, 0.3, 1.0}) EXPECT_EQ(sheet_transmittance(fit_glass_sheet(1), c), 1) << "a hole";
+  for (const double c : {0.0, 0.3, 1.0}) EXPECT_EQ(sheet_shares(fit_glass_sheet(1), c).transmittance, 1) << "a hole";
 }
 
 TEST(GlassSheet, TheTableIsWithinItsPrecision) {
@@ -54,7 +54,8 @@ TEST(GlassSheet, TheTableIsWithinItsPrecision) {
     const GlassTable table(Spectrum{T});
     for (int k = 0; k <= 100'000; ++k) {
       const double c = k * 1e-5;
-      ASSERT_NEAR(table.at(c)[0], sheet_transmittance(fit_glass_sheet(T), c), 1e-4) << T << " at cosine " << c;
+      ASSERT_NEAR(table.transmittance(c)[0], sheet_shares(fit_glass_sheet(T), c).transmittance, 1e-4)
+          << T << " at cosine " << c;
     }
   }
 }
@@ -66,7 +67,7 @@ TEST(GlassSheet, MatchesTheAnglesOfCie171Case5) {
     const bool absorbs = row.config.find("0.958") != std::string::npos;
     const GlassSheet sheet = fit_glass_sheet(absorbs ? kSixMillimetres : kClearGlass);
     const double passes = row.quantity.starts_with("T(")
-                              ? sheet_transmittance(sheet, std::cos(std::stod(row.quantity.substr(2)) * kDegree))
+                              ? sheet_shares(sheet, std::cos(std::stod(row.quantity.substr(2)) * kDegree)).transmittance
                               : diffuse_transmittance(sheet);
     EXPECT_NEAR(passes, row.value, 2e-8) << row.config << ", " << row.quantity;  // digits of the table
     ++compared;

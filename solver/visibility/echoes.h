@@ -1,0 +1,59 @@
+#pragma once
+// Rays that panes of glass have turned back, to where they end.
+
+#include <cstdint>
+
+#include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
+#include "solver/model/units.h"
+#include "solver/visibility/ray_scene.h"
+
+namespace clerestory {
+
+/// Random numbers for the echoes of the ray that stream `key` numbers k.
+inline RandomStream echo_numbers(std::uint64_t key, std::uint64_t k) { return {kEchoes, key, k}; }
+
+/// Calls found(hit) for where an echo ends, and for where echoes of it end: hit.transmittance is the share of the first
+/// ray's light that comes from there. Only the first always has a hit; another follows by roulette, with the share that
+/// glass on the way turned back for its chance, so that nothing is lost on the mean.
+template <class Found>
+void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& first, RandomStream& random,
+                 const Found& found) {
+  Echo echo = first, next;
+  while (!echo.is_none()) {
+    Hit hit = rays.first_hit(patches, echo.ray, &next);
+    hit.transmittance *= echo.share;
+    hit.plane = hit.reflected ? kNoPlane : echo.plane;
+    if (!hit.reflected) hit.reflected = true, hit.leg = echo.ray;
+    found(hit);
+    const double chance = luminous_mean(next.share);
+    if (!(random.uniform() < chance)) return;
+    next.share *= echo.share * (1 / std::min(chance, 1.0));
+    next.plane = kNoPlane;
+    echo = next;
+  }
+}
+
+/// Instead of a ray's hit and its echoes: one of them, the way that the light of one ray takes. It keeps what the hit
+/// of its kind has on the mean.
+inline Hit one_way(const RayScene& rays, const PatchSet& patches, const Ray& ray, RandomStream& random) {
+  Echo echo;
+  Hit hit = rays.first_hit(patches, ray, &echo);
+  if (echo.is_none()) return hit;
+  Spectrum share(1.0);
+  Ray leg = ray;
+  for (bool turned = false;; turned = true) {
+    const double on = luminous_mean(hit.transmittance), back = luminous_mean(echo.share);
+    const bool goes_on = echo.is_none() || random.uniform() * (on + back) >= back;
+    if (goes_on) {
+      hit.transmittance *= share * (echo.is_none() ? 1.0 : (on + back) / on);
+      if (turned && !hit.reflected) hit.reflected = true, hit.leg = leg;
+      return hit;
+    }
+    share *= echo.share * ((on + back) / back);
+    leg = echo.ray;
+    hit = rays.first_hit(patches, leg, &echo);
+  }
+}
+
+}  // namespace clerestory

@@ -23,16 +23,21 @@ constexpr double kShareToMeasure = 0.1;  ///< of a time limit
 /// For an error that is stated after the time limit, too.
 constexpr std::chrono::milliseconds kTimeToMeasure{400};
 
-/// By so many points; by four times as many where these leave open whether a target is met. Nothing where there was no
-/// time, or no light.
+/// By that effort; by four times as much, and again, while that leaves open whether a target is met and took less than
+/// a share of the time since `start`. Nothing where there was no time, or no light.
 template <class Measure>
-std::optional<MeasuredError> measured(ErrorEffort effort, const std::optional<double>& target, const Measure& measure) {
-  MeasuredError error = measure(effort);
-  if (const auto largest = error.largest(); target && largest.lower <= *target && *target < largest.upper) {
-    effort.points *= 4, effort.rays *= 4;
-    error = measure(effort);
+std::optional<MeasuredError> measured(ErrorEffort effort, const std::optional<double>& target,
+                                      std::chrono::steady_clock::time_point start, const Measure& measure) {
+  constexpr double kShare = 0.1;
+  for (;;) {
+    const auto before = std::chrono::steady_clock::now();
+    const MeasuredError error = measure(effort);
+    const auto largest = error.largest();
+    const bool leaves_open = target && largest.lower <= *target && *target < largest.upper;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - before, all = before - start;
+    if (!leaves_open || took > kShare * all) return error.samples > 0 ? std::optional(error) : std::nullopt;
+    effort.points *= 4, effort.paths *= 4, effort.rays *= 4;
   }
-  return error.samples > 0 ? std::optional(error) : std::nullopt;
 }
 
 struct PlanesAndE {
@@ -76,10 +81,11 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
       asked, observer, [&](Settings& settings, const Monitor& monitor, StageSeconds& seconds) -> std::optional<Solved> {
         // Scene -> patches, rays, lights, sides that light can reach, points to show it on.
         Solved out;
+        const auto start = std::chrono::steady_clock::now();
         Monitor preparing = monitor;  // late or not, there is nothing to show before the first round
         if (buried) preparing.interrupted = [&] { return monitor.should_stop(); };
         const bool measures = settings.error_samples.value_or(1) > 0;
-        const Monitor solving = measures ? monitor.earlier(kShareToMeasure * monitor.seconds_left()) : monitor;
+        const Monitor solving = measures ? monitor.within((1 - kShareToMeasure) * monitor.seconds_left()) : monitor;
         std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, preparing, seconds);
         if (!prepared) return {};
         auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
@@ -125,12 +131,12 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
           measuring.deadline =
               std::min(std::chrono::steady_clock::now() + kTimeToMeasure, monitor.deadline + 3 * kTimeToMeasure);
         if (measures)
-          out.error = measured(spend, settings.target_error, [&](const ErrorEffort& e) {
+          out.error = measured(spend, settings.target_error, start, [&](const ErrorEffort& e) {
             return measure_error(problem, solved.lightmap, solution, e, options.seed, measuring);
           });
         if (measures && at_planes.complete()) {
           const auto [planes, sets, E] = without(*buried, sensors, scene.sensors, at_planes.E);
-          out.error_sensors = measured(spend, settings.target_error, [&](const ErrorEffort& e) {
+          out.error_sensors = measured(spend, settings.target_error, start, [&](const ErrorEffort& e) {
             return measure_sensor_error(problem, planes, sets, E, solution, e, options.seed, measuring);
           });
         }

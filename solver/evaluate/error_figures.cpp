@@ -11,6 +11,7 @@
 namespace clerestory {
 namespace {
 
+constexpr double kFewPoints = 8;
 constexpr double kNoChance = 2.5;  ///< standard errors: one part in eighty is taken for wrong that is not
 
 /// Weighted means over comparisons.
@@ -91,7 +92,9 @@ template <class ReferenceOf>
 ErrorFigures figures_of(const Samples& samples, const Squares& s, const ReferenceOf& reference_of) {
   ErrorFigures e;
   e.samples = static_cast<std::size_t>(samples.count());
-  const double at_most = std::max(s.mean, 0.0) + s.half_width + squared(s.also * s.level);
+  // A few points may agree by chance.
+  const double half_width = samples.count() < kFewPoints ? std::max(s.half_width, s.noise) : s.half_width;
+  const double at_most = std::max(s.mean, 0.0) + half_width + squared(s.also * s.level);
   const double upper = std::sqrt(at_most) / s.level;
   e.bound = s.mean <= s.noise;
   e.rms_relative = e.bound ? upper : std::sqrt(s.mean) / s.level;
@@ -127,13 +130,19 @@ ErrorFigures by_paths(const Samples& samples, double level) {
   return figures_of(samples, s, [](const Comparison& c) { return c.r; });
 }
 
+bool most_find_light(const Samples& samples) {
+  return samples.mean([](const Comparison& c) { return c.r > 0 ? 1.0 : 0.0; }) > 0.5;
+}
+
 ErrorFigures by_gathers(const Samples& samples) {
   const auto gathered = [](const Comparison& c) { return (c.gather + c.other_gather) / 2; };
   const double level = samples.mean(gathered);
   const auto off = [&](const Comparison& c) { return (c.r - gathered(c)) / level; };
-  const double ratio = samples.mean(off), ratio_error = kConfidence * samples.std_error(off);
+  const double ratio = samples.mean(off);
+  const double of_noise = samples.deviation([&](const Comparison& c) { return c.std_error / level; });
+  const double ratio_error = kConfidence * std::max(samples.std_error(off), of_noise);
   // Where most paths find nothing, the few that do tell no mean.
-  const bool paths_can_judge = samples.mean([](const Comparison& c) { return c.r > 0 ? 1.0 : 0.0; }) > 0.5;
+  const bool paths_can_judge = most_find_light(samples);
   const bool is_off = paths_can_judge && samples.is_no_chance(off);
   const double factor = is_off ? std::max(1 + ratio, 0.01) : 1;
   const auto reference = [&](const Comparison& c) { return factor * gathered(c); };
@@ -182,7 +191,11 @@ ErrorFigures summarise(std::span<const Comparison> comparisons) {
   if (!(level > 0)) return {};  // in the dark there is nothing to be wrong about
   const bool has_gathers = std::ranges::all_of(comparisons, [](const Comparison& c) { return c.gather >= 0; }) &&
                            samples.mean([](const Comparison& c) { return c.gather + c.other_gather; }) > 0;
-  return has_gathers ? by_gathers(samples) : by_paths(samples, level);
+  if (!has_gathers) return by_paths(samples, level);
+  // Chosen by their own noise, and not by what either says of the result.
+  const double of_paths = samples.mean([](const Comparison& c) { return squared(c.std_error); });
+  const double of_gathers = samples.mean([](const Comparison& c) { return squared(c.gather - c.other_gather); }) / 2;
+  return most_find_light(samples) && of_paths < of_gathers / 2 ? by_paths(samples, level) : by_gathers(samples);
 }
 
 }  // namespace clerestory

@@ -286,7 +286,7 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   KeptTransport kept;
   if (!options.layers.empty() && !of_elements.keep) of_elements.keep = &kept;
   HierarchicalSolution coarse =
-      hierarchical(problem, mesh, of_elements, monitor.earlier(kShareOfField * monitor.seconds_left()));
+      hierarchical(problem, mesh, of_elements, monitor.within((1 - kShareOfField) * monitor.seconds_left()));
   const Problem transport{coarse.elements, problem.rays, problem.lights};
   FieldOptions vertices = options.vertices;
   if (options.goes_on) {
@@ -308,7 +308,7 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   const double share_of_later = monitor.has_deadline() ? share_for_later(transport, coarse.solution, mesh, options) : 0;
   const double left = monitor.seconds_left();
   VertexField field = gather_field(transport, coarse.solution.B, mesh, vertices,
-                                   monitor.earlier(std::min(share_of_later * left, left - kSecondsOfField)),
+                                   monitor.within(std::max((1 - share_of_later) * left, kSecondsOfField)),
                                    of_layers ? &*of_layers : nullptr, coarse.solution.slit_light);
   if (options.elements.debug) view_errors(mesh, field, options.elements.debug->error);
 

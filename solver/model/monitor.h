@@ -32,12 +32,12 @@ struct Monitor {
     if (!has_deadline()) return std::numeric_limits<double>::infinity();
     return std::max(0.0, std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count());
   }
-  /// With a deadline that is so many seconds before, where there is one.
-  Monitor earlier(double seconds) const {
+  /// With a deadline that is so many seconds from now, where there is one.
+  Monitor within(double seconds) const {
+    using Clock = std::chrono::steady_clock;
     Monitor m = *this;
     if (has_deadline())
-      m.deadline -=
-          std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+      m.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     return m;
   }
   bool is_late() const { return std::chrono::steady_clock::now() >= deadline; }

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/result_checks.h"
+#include "pipeline/target_rounds.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
 #include "solver/run/sound_result.h"
@@ -104,7 +105,8 @@ TEST(SolveScene, SettingsMayBeUsedTwiceWithATimeLimit) {
 TEST(SolveScene, WithTimeEnoughGivesWhatItGivesWithoutALimit) {
   // By way of a draft, whose elements tell that there is time.
   for (const Accuracy level : {Accuracy::draft, Accuracy::standard}) {
-    Settings settings{.solve = {.accuracy = level}};
+    Settings settings = draft();
+    settings.solve.accuracy = level;
     const Solved free = solve_scene(glowing_box(), settings);
     settings.time_limit = 3600;
     const Solved limited = solve_scene(glowing_box(), settings);
@@ -117,12 +119,16 @@ TEST(SolveScene, WithTimeEnoughGivesWhatItGivesWithoutALimit) {
 }
 
 TEST(SolveScene, WhoseTimeIsOverShowsVerticesAllTheSame) {
-  Settings settings{.time_limit = 1, .start = std::chrono::steady_clock::now() - std::chrono::hours(1)};
+  Settings settings;
+  settings.time_limit = 1;
+  settings.start = std::chrono::steady_clock::now() - std::chrono::hours(1);
   const Solved late = solve_scene(glowing_box(), settings);
   EXPECT_EQ(late.solution.stop, StopReason::time_limit);
   EXPECT_EQ(late.settings.solve.accuracy, Accuracy::draft);
-  EXPECT_EQ(late.solution.stopped_at, "accuracy draft, as standard would have taken longer");
-  for (const double E : late.lightmap.E.value) EXPECT_NEAR(E, 20, 0.5);
+  EXPECT_EQ(late.solution.stopped_at, "the ambient estimate");
+  for (std::size_t i = 0; i < late.patches.patch_count(); ++i)
+    for (const std::uint32_t p : late.lightmap.corners[i])
+      EXPECT_NEAR(late.lightmap.E[p][0], late.patches.M[i][0] > 0 ? 20 : 0, 0.5);  // the box is dark outside
 }
 
 /// Stops at once, and counts what it is told.
@@ -141,8 +147,44 @@ TEST(SolveScene, StoppedBeforeThereArePatchesIsEmpty) {
 class Listener : public Observer {
  public:
   void warn(const std::string& line) override { warnings.push_back(line); }
-  std::vector<std::string> warnings;
+  void step(const std::string& line) override { steps.push_back(line); }
+  std::vector<std::string> warnings, steps;
 };
+
+TEST(RoundFor, IsTheFirstThatReachesTheTargetByWhatTheErrorIsNow) {
+  EXPECT_EQ(round_for(0.05, 0, 0.1), 1u);   // a standard has half the error of a draft
+  EXPECT_EQ(round_for(0.021, 0, 0.1), 3u);  // and a fine one, raised once, a fifth
+  EXPECT_EQ(round_for(0.02, 1, 0.03), 2u);  // from a standard on
+  EXPECT_EQ(round_for(1e-6, 0, 0.1), 1u) << "one after another where none is expected to reach it";
+  for (std::size_t k = 1; k < kTargetRounds.size(); ++k) {
+    EXPECT_LT(kTargetRounds[k].error, kTargetRounds[k - 1].error);
+    EXPECT_GT(kTargetRounds[k].time, kTargetRounds[k - 1].time);
+  }
+}
+
+TEST(SolveScene, GoesFromADraftToWhatATargetErrorNeedsAndSaysBefore) {
+  // A lamp under the ceiling: a draft is some per cent off.
+  Scene scene = glowing_box();
+  scene.materials[0].exitance = Spectrum(0.0);
+  scene.lights.luminaires.push_back({"lamp", {2, 1.5, 2.2}, {}, PointLuminaire{Spectrum(10.0)}});
+  Settings settings;  // of `standard`, which a target does not start with
+  settings.target_error = 0.5;
+  Listener easy;
+  const Solved rough = solve_scene(scene, settings, easy);
+  EXPECT_TRUE(meets_target(rough));
+  EXPECT_EQ(rough.settings.solve.accuracy, Accuracy::draft);
+  EXPECT_TRUE(easy.steps.empty());
+  ASSERT_TRUE(rough.error);
+  settings.target_error = 0.9 * rough.error->largest().lower;  // draft is above for sure
+  ASSERT_GT(settings.target_error, 0.005);
+  Listener hard;
+  const Solved better = solve_scene(scene, settings, hard);
+  EXPECT_TRUE(meets_target(better));
+  EXPECT_GT(better.settings.solve.accuracy, Accuracy::draft);
+  ASSERT_FALSE(hard.steps.empty());
+  EXPECT_NE(hard.steps[0].find("with draft, asked for"), std::string::npos) << hard.steps[0];
+  EXPECT_NE(hard.steps[0].find("in about"), std::string::npos) << hard.steps[0];
+}
 
 TEST(SolveScene, WarnsOnceHoweverManyRoundsATargetErrorTakes) {
   Scene scene = glowing_box();

@@ -142,5 +142,26 @@ TEST(MeasuredError, LooksIntoASmallDarkSpaceBesideALargeBrightOne) {
   EXPECT_LT(e.parts[0].figures.upper(), 0.02);
 }
 
+TEST(MeasuredError, TheLargestIsThatOfTheWorstPartThatCounts) {
+  MeasuredError e{{.rms_relative = 0.01, .samples = 300, .confidence = 0.002}};
+  e.parts = {{.name = "hall", .area = 90, .figures = {.rms_relative = 0.01, .samples = 200, .confidence = 0.002}},
+             {.name = "room", .area = 9.5, .figures = {.rms_relative = 0.05, .samples = 90, .confidence = 0.02}},
+             {.name = "frame", .area = 0.5, .figures = {.rms_relative = 0.9, .samples = 10, .confidence = 0.1}}};
+  EXPECT_EQ(e.largest().measured, 0.05);
+  EXPECT_DOUBLE_EQ(e.largest().lower, 0.05 - 0.02);
+  EXPECT_DOUBLE_EQ(e.largest().upper, 0.05 + 0.02);
+  e.parts[1].figures = {};  // no path found light there
+  e.parts[1].mean_illuminance = 3;
+  EXPECT_EQ(e.largest().lower, 1);
+}
+
+TEST(ErrorFigures, OfOnePointAreNeverNothing) {
+  // A value that is right by chance, by gathers and by paths.
+  const std::vector<Comparison> gathered{{.x = 10, .r = 10, .std_error = 0.3, .gather = 10, .other_gather = 10.1}};
+  EXPECT_GT(summarise(gathered).upper(), 0.3 / 10);
+  const std::vector<Comparison> traced{{.x = 10, .r = 10, .std_error = 0.3}};
+  EXPECT_GT(summarise(traced).upper(), 0.3 / 10);
+}
+
 }  // namespace
 }  // namespace clerestory

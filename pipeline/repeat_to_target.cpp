@@ -70,8 +70,8 @@ double worst(const Solved& s, double Largest::*figure) {
 double worst_error(const Solved& s) { return worst(s, &Largest::upper); }  // for sure
 
 /// Where a time limit may leave time for a coarser level only.
-bool may_be_too_much(const Settings& s) {
-  return s.time_limit && s.solve.method == Method::hierarchical && s.solve.tighten == 0;
+bool may_be_too_much(const Settings& s, const Monitor& monitor) {
+  return monitor.has_deadline() && s.solve.method == Method::hierarchical && s.solve.tighten == 0;
 }
 
 Settings of_round(Settings asked, std::size_t round) {
@@ -107,7 +107,7 @@ void say_coarser(Solution& solution, Accuracy level, Accuracy asked) {
     solution.stopped_at = "accuracy " + name(level) + ", as " + name(asked) + " would have taken longer";
 }
 
-constexpr double kHelped = 0.9;      ///< of the error before: else finer rounds are of no use
+constexpr double kHelped = 0.9;  ///< of the error before: else finer rounds are of no use
 
 bool is_better(const Solved& a, const Solved& b) { return a.error && (!b.error || worst_error(a) <= worst_error(b)); }
 
@@ -147,7 +147,7 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
     return std::move(*solved);
   };
   const bool has_target = asked.target_error.has_value();
-  Solved best = attempt(has_target ? of_round(asked, 0) : asked, !has_target && may_be_too_much(asked));
+  Solved best = attempt(has_target ? of_round(asked, 0) : asked, !has_target && may_be_too_much(asked, monitor));
   std::size_t now = 0;
   while (!best.empty() && !meets_target(best) && !monitor.should_stop() && now + 1 < kTargetRounds.size()) {
     const double error = worst_error(best);
@@ -160,11 +160,11 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
       Solved finer = attempt(of_round(asked, next), false);
       now = next;
       if (finer.empty() || !finer.error) break;
-      const bool helped = worst_error(finer) < kHelped * error;
+      const double then = worst_error(finer);
       if (is_better(finer, best)) best = std::move(finer);
-      if (!helped && !meets_target(best) && now + 1 < kTargetRounds.size()) {
-        observer.step("error up to " + percent(worst_error(finer)) +
-                      ": finer elements and more rays hardly help, so this is the last round");
+      if (then > kHelped * error && !meets_target(best)) {
+        observer.step("error up to " + percent(then) +
+                      ": finer elements and more rays hardly help, so this was the last");
         break;
       }
     } catch (const InputError& e) {

@@ -41,6 +41,8 @@ constexpr double kShareOfSpot = 0.25;
 constexpr int kMostOfOne = 1024;       // rays of one receiver; by judgement
 constexpr double kDarkestShare = 0.1;  // share of a space's area that is no brighter than its ground light
 
+constexpr double kShareOfFirst = 0.7;  // of the time that is left: a first round that takes longer is of no use
+
 /// Quality of one round: thresholds fall from round to round.
 struct Quality {
   LinkOptions links;
@@ -274,15 +276,22 @@ Round solve_round(const Problem& whole, const ElementMesh& mesh, const Hierarchy
   return round;
 }
 
-/// Something to show where there is nothing better: what comes straight from the lights, and the ambient term.
-HierarchicalSolution ambient_picture(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options) {
+/// Something to show where time was not enough for the first round: shooting as far as there is time, or the ambient
+/// term alone.
+HierarchicalSolution rough_picture(const Problem& whole, const ElementMesh& mesh, const HierarchyOptions& options,
+                                   const Monitor& monitor) {
   HierarchicalSolution out;
   out.elements = mesh.leaf_patches();
   const Problem problem{out.elements, whole.rays, whole.lights};
+  const bool late = monitor.should_stop();
   const DirectLight direct = direct_light(
-      Illumination(problem), {.shadow_rays = 16, .edge_rays = 16, .sky_rays = 8, .seed = options.seed}, {});
-  out.solution = shoot(problem, direct, measure_closure(problem, 8, options.seed), {.max_rounds = 0}, {});
+      Illumination(problem),
+      {.shadow_rays = 16, .edge_rays = 16, .sky_rays = late ? 8 : 32, .seed = options.seed, .rough_first = false}, {});
+  out.solution = shoot(
+      problem, direct, measure_closure(problem, late ? 8 : 16, options.seed),
+      {.stop_fraction = 0.03, .rays_per_patch = 32, .max_rounds = late ? 0 : 1000, .seed = options.seed}, monitor);
   out.solution.method = "hierarchical";
+  out.solution.log = {late ? "the ambient estimate" : "progressive shooting"};
   return out;
 }
 
@@ -310,7 +319,8 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     std::size_t before = mesh.leaf_count();
     const std::string name = "round " + std::to_string(number);
     const double left = monitor.seconds_left();
-    going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), monitor));
+    const Monitor in_time = number == 0 ? monitor.within(kShareOfFirst * left) : monitor;
+    going = go_on(solve_round(problem, mesh, options, coarse(options), name.c_str(), last.get(), in_time));
     if (!going) break;
     if (monitor.has_deadline()) seconds = left - monitor.seconds_left();
     if (options.oracle == Oracle::bf) {
@@ -349,9 +359,9 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     out = std::move(last->result);
     returned = std::move(last->element);
   } else {
-    out = ambient_picture(problem, mesh, options);
+    out = rough_picture(problem, mesh, options, monitor);
     rays += out.solution.rays;
-    log.push_back("the ambient estimate");
+    log.push_back(out.solution.log.back());
   }
   if (!going) {
     out.solution.stop = why_stopped(monitor);

@@ -165,6 +165,18 @@ PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, 
                    point_of, GatherPattern(quality, options.seed), stage, monitor);
 }
 
+/// The quality of this level, or what a deadline leaves of it.
+GatherQuality quality_until(const Monitor& monitor, const Problem& problem, const Solution& solution,
+                            const Gathers& gathers, const SolveOptions& options, GatherQuality Effort::*quality) {
+  const GatherQuality wanted = effort_of(options).*quality;
+  if (!monitor.has_deadline() || options.method == Method::path || gathers.count == 0) return wanted;
+  std::vector<GatherQuality> qualities{wanted};
+  for (const GatherQuality& coarser : coarser_than(options, quality)) qualities.push_back(coarser);
+  const Illumination light =
+      gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor);
+  return quality_in_time(light, gathers, qualities, monitor.seconds_left(), options.seed);
+}
+
 /// What stopped solves take to show a rough value at their sensors, when they are more than take that long.
 constexpr std::chrono::seconds kTimeForSensors{1};
 constexpr std::size_t kQuickSensors = 2'000;
@@ -222,15 +234,20 @@ namespace {
 
 SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, const SolveOptions& options,
                                     const Monitor& monitor, FormFactorMatrix* keep_matrix) {
-  SolvedPatches solved{{}, std::move(map), solve_on_patches(problem, options, monitor, keep_matrix), options.accuracy};
+  constexpr double kShareOfPatches = 0.6;  // of the time that is left: means of patches show far less than gathers
+  const Effort e = effort_of(options);
+  const Monitor for_patches = e.gathers_vertices ? monitor.within(kShareOfPatches * monitor.seconds_left()) : monitor;
+  SolvedPatches solved{
+      {}, std::move(map), solve_on_patches(problem, options, for_patches, keep_matrix), options.accuracy};
   VertexLightmap& lightmap = solved.lightmap;
   Solution& solution = solved.solution;
   average_to_points(problem.patches, solution.E, lightmap);
-  const Effort e = effort_of(options);
   if (!e.gathers_vertices || monitor.should_stop()) return solved;
+  const Gathers gathers{lightmap.sample_position.size(), sample_points(lightmap, problem.rays)};
   const PointIrradiance at_samples =
-      irradiance_at(problem, solution, lightmap.sample_position.size(), sample_points(lightmap, problem.rays),
-                    e.vertices, e.paths, kPathsOfSample, "vertices", options, monitor);
+      irradiance_at(problem, solution, gathers.count, gathers.place,
+                    quality_until(monitor, problem, solution, gathers, options, &Effort::vertices), e.paths,
+                    kPathsOfSample, "vertices", options, monitor);
   set_points(at_samples, lightmap);
   const std::vector<std::uint32_t> near = numbers_of(patches_near_luminaires(problem.patches, problem.lights));
   carry_flux_to_points(problem.patches, solution.E, near, lightmap);
@@ -266,18 +283,12 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
                                       const Monitor& monitor) {
   const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
   const Effort e = effort_of(options);
-  GatherQuality quality = e.sensors;
-  if (monitor.has_deadline() && options.method != Method::path && !points.empty()) {
-    SolveOptions level = options;
-    level.accuracy = std::max(options.accuracy, options.at_most);
-    std::vector<GatherQuality> qualities{effort_of(level).sensors};
-    for (const GatherQuality& coarser : coarser_than(level, &Effort::sensors)) qualities.push_back(coarser);
-    const Illumination light =
-        gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor);
-    quality = quality_in_time(light, {points.size(), point_of}, qualities, monitor.seconds_left(), options.seed);
-  }
-  PointIrradiance at_points = irradiance_at(problem, solution, points.size(), point_of, quality, e.paths_of_sensor,
-                                            kPathsOfSensor, "sensors", options, monitor);
+  SolveOptions finest = options;
+  finest.accuracy = std::max(options.accuracy, options.at_most);
+  PointIrradiance at_points =
+      irradiance_at(problem, solution, points.size(), point_of,
+                    quality_until(monitor, problem, solution, {points.size(), point_of}, finest, &Effort::sensors),
+                    e.paths_of_sensor, kPathsOfSensor, "sensors", options, monitor);
   if (!at_points.complete()) {
     // Paths have no bound on their length; looking at the elements has one, and serves any method when time is up.
     Monitor patient;

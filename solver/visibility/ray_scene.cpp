@@ -474,7 +474,7 @@ std::uint32_t RayScene::plane_of(TriangleId t) const {
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }
 Vec3 RayScene::off_surface(const Vec3& p, const Vec3& n) const { return impl_->off_surface(p, n, lift_share_); }
-RayScene RayScene::with_nearer_ends() const { return {impl_, 0.25}; }
+RayScene RayScene::with_nearer_ends() const { return {impl_, 0.5}; }
 bool RayScene::has_tight_places() const { return impl_->tight.any(); }
 bool RayScene::is_tight(const Vec3& p) const { return impl_->tight.contains(p); }
 double RayScene::diameter() const { return impl_->diameter; }

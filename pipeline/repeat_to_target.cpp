@@ -71,7 +71,7 @@ double worst_error(const Solved& s) { return worst(s, &Largest::upper); }  // fo
 
 /// Where a time limit may leave time for a coarser level only.
 bool may_be_too_much(const Settings& s, const Monitor& monitor) {
-  return monitor.has_deadline() && s.solve.method == Method::hierarchical && s.solve.tighten == 0;
+  return monitor.has_deadline() && s.solve.method == Method::hierarchical;
 }
 
 Settings of_round(Settings asked, std::size_t round) {
@@ -135,8 +135,15 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
     if (may_start_with_draft) settings.solve.at_most = level, settings.solve.accuracy = Accuracy::draft;
     std::optional<Solved> solved = round(settings, monitor, seconds);
     if (solved && solved->rather) {
-      settings.solve.at_most = settings.solve.accuracy = *solved->rather;
-      solved = round(settings, monitor, seconds);
+      Settings finer = settings;
+      finer.solve.at_most = finer.solve.accuracy = *solved->rather;
+      try {
+        solved = round(finer, monitor, seconds);
+        settings = finer;
+      } catch (const InputError&) {  // more memory than the limit leaves
+        settings.solve.at_most = settings.solve.accuracy;
+        solved = round(settings, monitor, seconds);
+      }
     }
     if (!solved) {
       solved.emplace();
@@ -151,9 +158,15 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
   std::size_t now = 0;
   while (!best.empty() && !meets_target(best) && !monitor.should_stop() && now + 1 < kTargetRounds.size()) {
     const double error = worst_error(best);
-    const std::size_t next = round_for(*asked.target_error / kConfidence, now, worst(best, &Largest::measured));
+    std::size_t next = round_for(*asked.target_error / kConfidence, now, worst(best, &Largest::measured));
     const double took = std::chrono::duration<double>(Clock::now() - round_start).count();
     observer.step(expectation(best, now, next, took));
+    while (next > now && took * kTargetRounds[next].time / kTargetRounds[now].time > monitor.seconds_left()) --next;
+    if (next == now) {
+      observer.step("there is no time for it");
+      best.solution.stop = StopReason::time_limit;
+      break;
+    }
     // What is solved already must not be lost to a try that needs too much.
     try {
       round_start = Clock::now();
@@ -162,7 +175,7 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
       if (finer.empty() || !finer.error) break;
       const double then = worst_error(finer);
       if (is_better(finer, best)) best = std::move(finer);
-      if (then > kHelped * error && !meets_target(best)) {
+      if (then > kHelped * error && !meets_target(best) && !monitor.should_stop()) {
         observer.step("error up to " + percent(then) +
                       ": finer elements and more rays hardly help, so this was the last");
         break;

@@ -27,17 +27,24 @@ constexpr std::chrono::milliseconds kTimeToMeasure{400};
 /// a share of the time since `start`. Nothing where there was no time, or no light.
 template <class Measure>
 std::optional<MeasuredError> measured(ErrorEffort effort, const std::optional<double>& target,
-                                      std::chrono::steady_clock::time_point start, const Measure& measure) {
+                                      std::chrono::steady_clock::time_point start, const Monitor& monitor,
+                                      const Measure& measure) {
+  using Clock = std::chrono::steady_clock;
   constexpr double kShare = 0.1;
-  for (;;) {
-    const auto before = std::chrono::steady_clock::now();
-    const MeasuredError error = measure(effort);
+  const auto leaves_open = [&](const MeasuredError& error) {
     const auto largest = error.largest();
-    const bool leaves_open = target && largest.lower <= *target && *target < largest.upper;
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - before, all = before - start;
-    if (!leaves_open || took > kShare * all) return error.samples > 0 ? std::optional(error) : std::nullopt;
+    return target && largest.lower <= *target && *target < largest.upper;
+  };
+  auto before = Clock::now();
+  MeasuredError error = measure(effort);
+  while (leaves_open(error) && Clock::now() - before < kShare * (before - start)) {
+    before = Clock::now();
     effort.points *= 4, effort.paths *= 4, effort.rays *= 4;
+    const MeasuredError sharper = measure(effort);
+    if (monitor.should_stop() || sharper.samples < error.samples) break;  // part of it says less than what there is
+    error = sharper;
   }
+  return error.samples > 0 ? std::optional(error) : std::nullopt;
 }
 
 struct PlanesAndE {
@@ -76,6 +83,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
   const SensorPlanes sensors = planes_of(scene.sensors);
 
   std::optional<std::vector<std::size_t>> buried;  // once the first patches are there
+  bool has_solved = false;
   std::vector<std::string> hints;
   Solved best = repeat_to_target(
       asked, observer, [&](Settings& settings, const Monitor& monitor, StageSeconds& seconds) -> std::optional<Solved> {
@@ -83,7 +91,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         Solved out;
         const auto start = std::chrono::steady_clock::now();
         Monitor preparing = monitor;  // late or not, there is nothing to show before the first round
-        if (buried) preparing.interrupted = [&] { return monitor.should_stop(); };
+        if (has_solved) preparing.interrupted = [&] { return monitor.should_stop(); };
         const bool measures = settings.error_samples.value_or(1) > 0;
         const Monitor solving = measures ? monitor.within((1 - kShareToMeasure) * monitor.seconds_left()) : monitor;
         std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, preparing, seconds);
@@ -131,12 +139,12 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
           measuring.deadline =
               std::min(std::chrono::steady_clock::now() + kTimeToMeasure, monitor.deadline + 3 * kTimeToMeasure);
         if (measures)
-          out.error = measured(spend, settings.target_error, start, [&](const ErrorEffort& e) {
+          out.error = measured(spend, settings.target_error, start, measuring, [&](const ErrorEffort& e) {
             return measure_error(problem, solved.lightmap, solution, e, options.seed, measuring);
           });
         if (measures && at_planes.complete()) {
           const auto [planes, sets, E] = without(*buried, sensors, scene.sensors, at_planes.E);
-          out.error_sensors = measured(spend, settings.target_error, start, [&](const ErrorEffort& e) {
+          out.error_sensors = measured(spend, settings.target_error, start, measuring, [&](const ErrorEffort& e) {
             return measure_sensor_error(problem, planes, sets, E, solution, e, options.seed, measuring);
           });
         }
@@ -151,6 +159,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         out.solution = std::move(solution);
         out.repairs = repairs;
         out.lit_sides = std::move(lit_sides);
+        has_solved = true;
         return out;
       });
   warn_about_result(best, observer);

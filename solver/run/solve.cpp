@@ -232,18 +232,32 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
 
 namespace {
 
+/// What a deadline must leave for vertices after the patches: means of patches show far less.
+double seconds_for_vertices(const Problem& problem, const Gathers& vertices, const SolveOptions& options, double left) {
+  constexpr double kMost = 0.4, kLonger = 1.5;  // than gathers that know of no reflected light
+  if (!std::isfinite(left)) return 0;
+  const auto n = static_cast<double>(vertices.count);
+  if (options.method == Method::path) return left * n / (n + static_cast<double>(problem.patches.patch_count()));
+  return std::min(kMost * left, kLonger * n * seconds_a_gather(Illumination(problem), vertices, options.seed));
+}
+
 SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, const SolveOptions& options,
                                     const Monitor& monitor, FormFactorMatrix* keep_matrix) {
-  constexpr double kShareOfPatches = 0.6;  // of the time that is left: means of patches show far less than gathers
   const Effort e = effort_of(options);
-  const Monitor for_patches = e.gathers_vertices ? monitor.within(kShareOfPatches * monitor.seconds_left()) : monitor;
+  const auto gathers_at = [&](const VertexLightmap& m) {
+    return Gathers{m.sample_position.size(), sample_points(m, problem.rays), e.vertices};
+  };
+  const double left = monitor.seconds_left();
+  const Monitor for_patches = e.gathers_vertices
+                                  ? monitor.within(left - seconds_for_vertices(problem, gathers_at(map), options, left))
+                                  : monitor;
   SolvedPatches solved{
       {}, std::move(map), solve_on_patches(problem, options, for_patches, keep_matrix), options.accuracy};
   VertexLightmap& lightmap = solved.lightmap;
   Solution& solution = solved.solution;
   average_to_points(problem.patches, solution.E, lightmap);
   if (!e.gathers_vertices || monitor.should_stop()) return solved;
-  const Gathers gathers{lightmap.sample_position.size(), sample_points(lightmap, problem.rays)};
+  const Gathers gathers = gathers_at(lightmap);
   const PointIrradiance at_samples =
       irradiance_at(problem, solution, gathers.count, gathers.place,
                     quality_until(monitor, problem, solution, gathers, options, &Effort::vertices), e.paths,

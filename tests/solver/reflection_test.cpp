@@ -10,6 +10,7 @@
 #include "solver/methods/hierarchical.h"
 #include "solver/model/error.h"
 #include "solver/run/solve.h"
+#include "solver/visibility/echoes.h"
 #include "solver/visibility/glass_sheet.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/photon_tracer.h"
@@ -283,6 +284,79 @@ TEST(Reflection, ALampBetweenTwoMirrorsHasARowOfImages) {
   // Fifteen planes on either side: what is beyond them is 0.1 % here.
   EXPECT_NEAR(delta_light(b.build(), spec, p, n) / expected, 1, 5e-3);
 }
+
+/// A closed room with a lamp, and in it a closed cube of panes with a small tray and another lamp.
+PatchSet cube_of_panes(double transmittance) {
+  PatchBuilder b(0.5);
+  b.box({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {4, 4, 4}, true);
+  b.rectangle({0.7, 0.7, 0.6}, {0.4, 0, 0}, {0, 0.4, 0}, 8, 8);
+  b.glass(transmittance).box({0.5, 0.5, 0.5}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, true);
+  return b.build();
+}
+
+bool is_of_tray(const PatchSet& patches, PatchId i) {
+  const auto c = patches.corner_positions(i);
+  return std::max(std::abs(c[0].z - 0.6), std::abs(c[1].z - 0.6)) < 1e-9;
+}
+
+TEST(OneWay, BringsWhatRaysAndAllTheirEchoesBring) {
+  for (const double T : {0.0, 1e-7, 0.3, 0.9}) {
+    const PatchSet patches = cube_of_panes(T);
+    const RayScene rays(patches);
+    constexpr std::uint64_t kCount = 200'000;
+    double all = 0, one = 0, square_all = 0, square_one = 0;  // of what gets to the tray
+    const auto at_tray = [&](const Hit& hit) {
+      return hit.patch.valid() && is_of_tray(patches, hit.patch) ? hit.transmittance[0] / kCount : 0.0;
+    };
+    for (std::uint64_t k = 0; k < kCount; ++k) {
+      RandomStream random(7, k);
+      const double z = 1 - 2 * random.uniform(), phi = 2 * kPi * random.uniform(), r = std::sqrt(1 - z * z);
+      const Ray ray{{1, 1, 0.9}, {r * std::cos(phi), r * std::sin(phi), z}};
+      Echo echo;
+      double of_all = at_tray(rays.first_hit(patches, ray, &echo));
+      if (!echo.is_none()) follow_echo(rays, patches, echo, random, [&](const Hit& h) { of_all += at_tray(h); });
+      const double of_one = at_tray(one_way(rays, patches, ray, random));
+      all += of_all, square_all += of_all * of_all, one += of_one, square_one += of_one * of_one;
+    }
+    const double error = std::sqrt(square_all - all * all / kCount + square_one - one * one / kCount);
+    EXPECT_LT(error, 0.02 * all);
+    EXPECT_NEAR(one, all, 4 * error) << T;
+  }
+}
+
+class CubeOfPanes : public testing::TestWithParam<Method> {};
+
+TEST_P(CubeOfPanes, LightInItEndsThoughTheyLetNothingPass) {
+  for (const double T : {0.0, 1e-7}) {
+    const PatchSet patches = cube_of_panes(T);
+    const RayScene rays(patches);
+    LightSpec spec;
+    spec.luminaires = {test::point_lamp({1, 1, 0.9}, 100), test::point_lamp({1, 1, 1.8}, 100)};
+    const Lights lights = place_lights(spec, patches, rays);
+    const Solution s = solve_on_patches({patches, rays, lights}, {.method = GetParam()});
+    EXPECT_NEAR(s.energy.imbalance(), 0, 0.01) << T;
+    // On the tray: the lamp, and its images in the panes beside and above it. Over two panes comes a thousandth of it.
+    const GlassSheet sheet = fit_glass_sheet(T);
+    constexpr int kGrid = 64;
+    double expected = 0, found = 0;
+    for (int k = 0; k < kGrid * kGrid; ++k) {
+      const Vec3 x{0.7 + 0.4 * (k % kGrid + 0.5) / kGrid, 0.7 + 0.4 * (k / kGrid + 0.5) / kGrid, 0.6};
+      double E = of_lamp(100, {1, 1, 0.9}, x, {0, 0, 1});
+      for (const auto& [image, across] : {std::pair{Vec3{0, 1, 0.9}, Vec3{1, 0, 0}},
+                                          {{2, 1, 0.9}, {1, 0, 0}},
+                                          {{1, 0, 0.9}, {0, 1, 0}},
+                                          {{1, 2, 0.9}, {0, 1, 0}},
+                                          {{1, 1, 2.1}, {0, 0, 1}}})
+        E += of_lamp(100, image, x, {0, 0, 1}) *
+             sheet_shares(sheet, std::abs(dot(normalized(x - image), across))).reflectance;
+      expected += 0.16 / (kGrid * kGrid) * E;
+    }
+    for (std::size_t i = 0; i < patches.patch_count(); ++i)
+      if (is_of_tray(patches, PatchId{i})) found += patches.area[i] * s.E[i][0];
+    EXPECT_NEAR(found / expected, 1, 3e-3) << T;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes, testing::Values(Method::progressive, Method::path));
 
 class WhiteCavity : public testing::TestWithParam<Method> {};
 

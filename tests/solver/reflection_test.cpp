@@ -358,6 +358,39 @@ TEST_P(CubeOfPanes, LightInItEndsThoughTheyLetNothingPass) {
 }
 INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes, testing::Values(Method::progressive, Method::path));
 
+TEST(Reflection, TheShareOfAnImageIsWhatIsLeftOnItsWay) {
+  PatchBuilder b(0.0);
+  b.rectangle({0, -20, -20}, {1, 0, 0}, {0, 40, 0});
+  b.mirror(0.5).rectangle({0, -20, -20}, {0, 40, 0}, {0, 0, 40}).rectangle({1, -20, -20}, {0, 40, 0}, {0, 0, 40});
+  const PatchSet patches = b.build();
+  LightSpec spec;
+  spec.luminaires = {test::point_lamp({0.5, 0, 0}, 100)};
+  const Lights lights = place_lights(spec, patches, RayScene(patches));
+  std::size_t longest = 0;
+  for (const PlacedLuminaire& luminaire : lights.luminaires) {
+    EXPECT_NEAR(luminaire.share, std::pow(0.5, luminaire.way.count), 1e-9);
+    longest = std::max<std::size_t>(longest, luminaire.way.count);
+  }
+  EXPECT_GT(longest, 3u);
+}
+
+TEST(Reflection, WhatFacetsWithoutImagesTurnOfTheSunIsToldAsLost) {
+  // A row of mirrors, each in a plane of its own, of equal size and equally lit: 64 of them have images.
+  for (const int facets : {60, 128}) {
+    PatchBuilder b(0.0);
+    b.mirror(0.8);
+    for (int k = 0; k < facets; ++k) {
+      const double turned = (k - facets / 2) * 1e-3;
+      b.rectangle({2.0 * k, 0, 0}, {std::cos(turned), 0, std::sin(turned)}, {0, 1, 0});
+    }
+    const PatchSet patches = b.build();
+    LightSpec spec;
+    spec.suns = {{{0, 0.6, 0.8}, Spectrum(1000)}};
+    const Lights lights = place_lights(spec, patches, RayScene(patches));
+    EXPECT_NEAR(lights.lost_in_mirrors, facets > 64 ? 0.8 * (facets - 64) / facets : 0.0, 5e-3) << facets;
+  }
+}
+
 class WhiteCavity : public testing::TestWithParam<Method> {};
 
 TEST_P(WhiteCavity, KeepsItsLightAroundAPaneThatAbsorbsNothing) {

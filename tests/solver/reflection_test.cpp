@@ -5,11 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/illumination/image_beams.h"
 #include "solver/illumination/light_sampler.h"
 #include "solver/illumination/place_lights.h"
+#include "solver/lights/sun.h"
 #include "solver/methods/hierarchical.h"
 #include "solver/model/error.h"
 #include "solver/run/solve.h"
+#include "solver/sampling/unit_square.h"
 #include "solver/visibility/echoes.h"
 #include "solver/visibility/glass_sheet.h"
 #include "tests/support/luminaires.h"
@@ -389,6 +392,47 @@ TEST(Reflection, WhatFacetsWithoutImagesTurnOfTheSunIsToldAsLost) {
     const Lights lights = place_lights(spec, patches, RayScene(patches));
     EXPECT_NEAR(lights.lost_in_mirrors, facets > 64 ? 0.8 * (facets - 64) / facets : 0.0, 5e-3) << facets;
   }
+}
+
+TEST(Reflection, ASurfaceThatAnImageOfTheSunMayNotReachGetsNothingOfIt) {
+  // Mirrors all around that lean inwards, and a street between two: images over one and over several.
+  PatchBuilder b(0.0);
+  b.rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  b.mirror(0.9);
+  for (int k = 0; k < 12; ++k) {
+    const double phi = 2 * kPi * k / 12;
+    const Vec3 out{std::cos(phi), std::sin(phi), 0}, along{-out.y, out.x, 0};
+    b.rectangle(Vec3{2, 2, 0.2} + out * 3 - along * 0.7, along * 1.4, Vec3{0, 0, 2} - out * 0.2);
+  }
+  b.rectangle({1.5, 0, 0}, {0, 3, 0}, {0, 0, 2}).rectangle({2.5, 0, 0}, {0, 3, 0}, {0.05, 0, 2});
+  const PatchSet patches = b.build();
+  const RayScene rays(patches);
+  LightSpec spec;
+  spec.suns = {{normalized({0.6, 0.1, 0.6}), Spectrum(1000)}};
+  const Lights lights = place_lights(spec, patches, rays);
+  int reached = 0, skipped = 0, over_several = 0;
+  for (std::uint64_t t = 0; t < 400; ++t) {
+    RandomStream random(3, t);
+    const Vec3 at{4 * random.uniform(), 4 * random.uniform(), 1.5 * random.uniform()};
+    std::array<Vec3, 3> corners;
+    for (Vec3& c : corners) c = at + Vec3{random.uniform(), random.uniform(), random.uniform()} * 0.4;
+    for (const PlacedSun& sun : lights.suns) {
+      const bool may = may_reach(rays, sun, corners);
+      EXPECT_TRUE(may || sun.is_image());
+      bool gets = false;
+      for (std::uint32_t k = 0; k < 64; ++k) {
+        const auto u = sobol4(k, t);
+        const Vec3 p = point_on_triangle(corners, u[0], u[1]);
+        const Vec3 far = p + direction_to_sun(sun, u[2], u[3]) * (4 * rays.diameter());
+        gets = gets || (sun.is_image() && !rays.transmittance_by_mirrors(p, far, sun.way).is_black());
+      }
+      EXPECT_TRUE(may || !gets) << "over " << int{sun.way.count};
+      reached += gets, over_several += gets && sun.way.count > 1, skipped += !may;
+    }
+  }
+  EXPECT_GT(reached, 100);
+  EXPECT_GT(over_several, 5);
+  EXPECT_GT(skipped, 4 * reached);
 }
 
 class WhiteCavity : public testing::TestWithParam<Method> {};

@@ -13,6 +13,7 @@
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
+#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 namespace {
@@ -131,7 +132,7 @@ std::vector<Landed> cast(const Problem& problem, const Field& B, const Sender& r
       const Frame frame(patches.normal[i]);
       const Vec3 from = point_on_triangle(patches.corner_positions(PatchId{i}), u[2], u[3]);
       const Ray ray{problem.rays.off_surface(from, frame.n), cosine_direction(frame, u[0], u[1])};
-      const Hit hit = problem.rays.first_hit(patches, ray);
+      const Hit hit = one_way(problem.rays, patches, ray, random);
       if (!hit.patch.valid()) continue;
       landed[k] = {static_cast<std::uint32_t>(room_of(patches, hit.patch.value)),
                    static_cast<float>(luminous_mean(hit.transmittance * B[i]) / luminous_mean(B[i]))};

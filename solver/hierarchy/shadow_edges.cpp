@@ -217,7 +217,8 @@ ShadowEdges cut_shadow_edges(ElementMesh& mesh, const Problem& problem, const Fi
       for (std::size_t i = begin; i < end && !monitor.should_stop(); ++i) {
         const LeafInLight leaf_in_light(mesh, leaves[i]);
         worth[i] =
-            light.open_irradiance(leaf_in_light.centre(), leaf_in_light.normal()) > kContrast * luminous_mean(E[i]);
+            light.open_irradiance(leaf_in_light.centre(), leaf_in_light.normal()) > kContrast * luminous_mean(E[i]) &&
+            light.may_reach(leaf_in_light.corners());
       }
     });
     std::vector<std::uint32_t> candidates;

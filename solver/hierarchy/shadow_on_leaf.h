@@ -22,6 +22,7 @@ class LeafInLight {
 
   Vec3 centre() const { return (x_[0] + x_[1] + x_[2]) / 3; }
   const Vec3& normal() const { return n_; }
+  const std::array<Vec3, 3>& corners() const { return x_; }
   double length_of(std::size_t k) const { return length(x_[(k + 1) % 3] - x_[k]); }
   /// A point a little inside of edge k, as points of the lightmap are: off what stands on it.
   Vec3 on_edge(std::size_t k, double t) const { return inside(x_[k] * (1 - t) + x_[(k + 1) % 3] * t); }

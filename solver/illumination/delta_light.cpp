@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "solver/illumination/image_beams.h"
 #include "solver/illumination/light_rows.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/luminaire_view.h"
@@ -42,6 +43,7 @@ class PatchSampler {
         row_(row) {}
 
   const Vec3& normal() const { return normal_; }
+  bool may_see(const PlacedSun& sun) const { return may_reach(problem_.rays, sun, corners_); }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
   /// Whether any of the luminaire may be in front of any of the patch.
   bool faces(const PlacedLuminaire& luminaire) const {
@@ -277,7 +279,7 @@ Spectrum from_luminaires(const Lights& lights, std::span<const Beam> beams, cons
 }
 
 Spectrum from_sun(const PatchSampler& patch, const PlacedSun& sun, std::uint32_t number, double far_away) {
-  if (dot(patch.normal(), sun.direction) < -0.01) return Spectrum(0.0);
+  if (dot(patch.normal(), sun.direction) < -0.01 || !patch.may_see(sun)) return Spectrum(0.0);
   return patch.mean([&](const Vec3& p, double u, double v, const auto&) -> ShadowTry {
     const Vec3 d = direction_to_sun(sun, u, v);
     return {

@@ -1,6 +1,7 @@
 #include "solver/illumination/find_images.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -32,6 +33,16 @@ struct Taken {
   double comes = 0, turned = 0;  ///< flux before the last plane of it, and after
 };
 using Ways = std::map<MirrorWay, Taken>;
+
+/// What is left of the light on a way, of which the walk noted every part.
+double share_left(const Ways& ways, MirrorWay way) {
+  double share = 1;
+  for (; way.count > 0; way = way.without_last()) {
+    const Taken& taken = ways.at(way);
+    share *= taken.turned / taken.comes;
+  }
+  return share;
+}
 
 /// Light of some flux on its way over mirrors and panes.
 class Walk {
@@ -93,7 +104,7 @@ struct Images {
     for (const auto& [way, taken] : ways) {
       const bool over_one = way.count == 1, by_mirror = over_one && !planes[way.plane[0]].is_glass;
       if (by_mirror || taken.turned > (over_one ? kWorthAPane : kWorthMore) * flux) {
-        images.push_back({way, taken.turned, taken.turned / taken.comes});
+        images.push_back({way, taken.turned, share_left(ways, way)});
         if (by_mirror) has_image[way.plane[0]] = true;
       } else {
         lost += taken.turned;
@@ -175,50 +186,52 @@ struct Turning {
   double area() const { return area_up_to.empty() ? 0 : area_up_to.back(); }
 };
 
+/// By number of the plane; last what lies in planes without a number.
 std::vector<Turning> what_turns(const PatchSet& patches, const RayScene& rays) {
-  std::vector<Turning> planes(rays.mirrors().size());
+  std::vector<Turning> planes(rays.mirrors().size() + 1);
   for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
     const Material& material = patches.front_material(TriangleId{t});
     if (!material.turns_rays() && !material.lets_rays_pass()) continue;
-    const std::uint32_t plane = rays.plane_of(TriangleId{t});
-    if (plane == kNoPlane) continue;
     const auto& c = patches.corners[t];
     const Vec3& a = patches.vertices[c[0]];
-    Turning& to = planes[plane];
+    Turning& to = planes[std::min<std::size_t>(rays.plane_of(TriangleId{t}), rays.mirrors().size())];
     to.area_up_to.push_back(to.area() + length(cross(patches.vertices[c[1]] - a, patches.vertices[c[2]] - a)) / 2);
     to.triangles.push_back(TriangleId{t});
   }
   return planes;
 }
 
-/// From points all over the planes that face the sun.
+/// From points all over what faces the sun.
 Images images_of(const PlacedSun& sun, const PatchSet& patches, const RayScene& rays,
                  const std::vector<Turning>& planes, std::uint64_t key, double& comes_in) {
   Ways ways;
   Walk walk(rays, ways);
-  const std::size_t count = std::clamp(kMostRays / std::max<std::size_t>(planes.size(), 1), kFewestRays, kMostRays / 4);
+  const std::size_t numbered = rays.mirrors().size(), most = kMostRays / 4;
   for (std::size_t m = 0; m < planes.size(); ++m) {
-    const MirrorPlane& plane = rays.mirrors()[m];
     const Turning& turning = planes[m];
-    const double along = dot(plane.normal, sun.direction);
-    if (along == 0 || !(turning.area() > 0)) continue;
-    const Vec3 up = along > 0 ? plane.normal : -plane.normal;
-    const double flux =
-        luminous_mean(sun.normal_irradiance) * std::abs(along) * turning.area() / static_cast<double>(count);
+    if (!(turning.area() > 0)) continue;
+    const bool has_number = m < numbered;
+    const std::size_t count = has_number ? std::clamp(kMostRays / numbered, kFewestRays, most) : most;
     for (std::size_t k = 0; k < count; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), stream_key(key, m));
       const auto at = std::ranges::upper_bound(turning.area_up_to, u[0] * turning.area());
       const auto& c = patches.corners[turning.triangles[std::min(
           static_cast<std::size_t>(at - turning.area_up_to.begin()), turning.triangles.size() - 1)]];
-      const Vec3 x =
-          point_on_triangle({patches.vertices[c[0]], patches.vertices[c[1]], patches.vertices[c[2]]}, u[1], u[2]);
-      const Vec3 from = rays.off_surface(x, up);
+      const std::array triangle{patches.vertices[c[0]], patches.vertices[c[1]], patches.vertices[c[2]]};
+      const Vec3 normal = has_number ? rays.mirrors()[m].normal
+                                     : normalized(cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+      const double along = dot(normal, sun.direction);
+      if (along == 0) continue;
+      const double flux =
+          luminous_mean(sun.normal_irradiance) * std::abs(along) * turning.area() / static_cast<double>(count);
+      const Vec3 from = rays.off_surface(point_on_triangle(triangle, u[1], u[2]), along > 0 ? normal : -normal);
       const double passes = luminous_mean(rays.transmittance(from, from + sun.direction * (4 * rays.diameter())));
       if (!(passes > 0)) continue;
       comes_in += flux * passes;
       const std::vector<Turn> turns = rays.turns({from, -sun.direction});
-      if (turns.empty() || turns.front().plane != m) continue;
+      if (turns.empty() || turns.front().plane != (has_number ? m : kNoPlane)) continue;
       walk.note(turns.front(), flux * passes, {});
+      if (!has_number) continue;  // it is lost
       RandomStream random(stream_key(key, m), k);
       walk.follow(turns.front().ray, flux * passes * luminous_mean(turns.front().share), MirrorWay{}.over(m), random);
     }

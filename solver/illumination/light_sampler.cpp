@@ -5,6 +5,7 @@
 #include <bit>
 #include <numbers>
 
+#include "solver/illumination/image_beams.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/near_planes.h"
 #include "solver/lights/sun.h"
@@ -217,6 +218,7 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffo
   shadows.trace();
   for (std::size_t number = 0; number < problem_.lights.suns.size(); ++number) {
     const PlacedSun& sun = problem_.lights.suns[number];
+    if (!may_reach(rays, sun, {&p, 1})) continue;
     for (int k = 0; k < effort.sun_rays; ++k) {
       const auto u = sobol4(static_cast<std::uint32_t>(k), key);
       const Vec3 d = direction_to_sun(sun, u[0], u[1]);

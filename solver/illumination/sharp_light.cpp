@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "solver/illumination/image_beams.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sun.h"
 #include "solver/model/units.h"
@@ -19,6 +20,10 @@ constexpr double kRim = 1 - 1e-9;  // of the disc, which ends before 1
 double SharpLight::open_irradiance(const Vec3& p, const Vec3& n) const {
   if (luminaire_) return luminaire_->share * luminous_mean(clerestory::open_irradiance(*luminaire_, p, n));
   return sun_->share * luminous_mean(sun_->normal_irradiance) * std::max(0.0, dot(n, sun_->direction));
+}
+
+bool SharpLight::may_reach(std::span<const Vec3, 3> corners) const {
+  return !sun_ || clerestory::may_reach(problem_->rays, *sun_, corners);
 }
 
 ShadowSegment SharpLight::to_centre(const Vec3& p, const Vec3& n) const {

@@ -21,6 +21,8 @@ class SharpLight {
 
   /// What it gives at p on a plane of normal n where nothing blocks, of an image about that, luminous mean [W/m2].
   double open_irradiance(const Vec3& p, const Vec3& n) const;
+  /// Whether any of a triangle may see it: not where its image's beam passes by.
+  bool may_reach(std::span<const Vec3, 3> corners) const;
   /// From which of up to 16 points on a surface of normal n its centre is seen: a bit each.
   std::uint16_t see_centre(std::span<const Vec3> points, const Vec3& n) const;
   bool sees_centre(const Vec3& p, const Vec3& n) const { return see_centre({&p, 1}, n) != 0; }

@@ -1,6 +1,7 @@
 #pragma once
 // Rays that panes of glass have turned back, to where they end.
 
+#include <algorithm>
 #include <cstdint>
 
 #include "solver/model/random_stream.h"
@@ -35,7 +36,8 @@ void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& firs
 }
 
 /// Instead of a ray's hit and its echoes: one of them, the way that the light of one ray takes. It keeps what the hit
-/// of its kind has on the mean.
+/// of its kind has on the mean. Once turned it ends by roulette with what glass took for its chance, so that it leaves
+/// glass that lets nothing pass: with a black hit without a patch.
 inline Hit one_way(const RayScene& rays, const PatchSet& patches, const Ray& ray, RandomStream& random) {
   Echo echo;
   Hit hit = rays.first_hit(patches, ray, &echo);
@@ -44,13 +46,19 @@ inline Hit one_way(const RayScene& rays, const PatchSet& patches, const Ray& ray
   Ray leg = ray;
   for (bool turned = false;; turned = true) {
     const double on = luminous_mean(hit.transmittance), back = luminous_mean(echo.share);
-    const bool goes_on = echo.is_none() || random.uniform() * (on + back) >= back;
+    const bool goes_on = echo.is_none() || (random.uniform() * (on + back) >= back && on > 0);
     if (goes_on) {
       hit.transmittance *= share * (echo.is_none() ? 1.0 : (on + back) / on);
       if (turned && !hit.reflected) hit.reflected = true, hit.leg = leg;
       return hit;
     }
     share *= echo.share * ((on + back) / back);
+    const double chance = luminous_mean(share);
+    if (!(random.uniform() < chance)) {
+      hit.patch = {}, hit.transmittance = Spectrum(0.0);
+      return hit;
+    }
+    share *= 1 / std::min(chance, 1.0);
     leg = echo.ray;
     hit = rays.first_hit(patches, leg, &echo);
   }

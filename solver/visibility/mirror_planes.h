@@ -44,6 +44,12 @@ struct MirrorWay {
     way.plane[way.count++] = static_cast<std::uint8_t>(next);
     return way;
   }
+  /// Needs: not empty.
+  MirrorWay without_last() const {
+    MirrorWay way = *this;
+    way.plane[--way.count] = 0;
+    return way;
+  }
   friend auto operator<=>(const MirrorWay&, const MirrorWay&) = default;
 };
 

@@ -5,11 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/illumination/image_beams.h"
 #include "solver/illumination/light_sampler.h"
 #include "solver/illumination/place_lights.h"
+#include "solver/lights/sun.h"
 #include "solver/methods/hierarchical.h"
 #include "solver/model/error.h"
 #include "solver/run/solve.h"
+#include "solver/sampling/unit_square.h"
+#include "solver/visibility/echoes.h"
 #include "solver/visibility/glass_sheet.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/photon_tracer.h"
@@ -282,6 +286,153 @@ TEST(Reflection, ALampBetweenTwoMirrorsHasARowOfImages) {
   }
   // Fifteen planes on either side: what is beyond them is 0.1 % here.
   EXPECT_NEAR(delta_light(b.build(), spec, p, n) / expected, 1, 5e-3);
+}
+
+/// A closed room with a lamp, and in it a closed cube of panes with a small tray and another lamp.
+PatchSet cube_of_panes(double transmittance) {
+  PatchBuilder b(0.5);
+  b.box({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {4, 4, 4}, true);
+  b.rectangle({0.7, 0.7, 0.6}, {0.4, 0, 0}, {0, 0.4, 0}, 8, 8);
+  b.glass(transmittance).box({0.5, 0.5, 0.5}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, true);
+  return b.build();
+}
+
+bool is_of_tray(const PatchSet& patches, PatchId i) {
+  const auto c = patches.corner_positions(i);
+  return std::max(std::abs(c[0].z - 0.6), std::abs(c[1].z - 0.6)) < 1e-9;
+}
+
+TEST(OneWay, BringsWhatRaysAndAllTheirEchoesBring) {
+  for (const double T : {0.0, 1e-7, 0.3, 0.9}) {
+    const PatchSet patches = cube_of_panes(T);
+    const RayScene rays(patches);
+    constexpr std::uint64_t kCount = 200'000;
+    double all = 0, one = 0, square_all = 0, square_one = 0;  // of what gets to the tray
+    const auto at_tray = [&](const Hit& hit) {
+      return hit.patch.valid() && is_of_tray(patches, hit.patch) ? hit.transmittance[0] / kCount : 0.0;
+    };
+    for (std::uint64_t k = 0; k < kCount; ++k) {
+      RandomStream random(7, k);
+      const double z = 1 - 2 * random.uniform(), phi = 2 * kPi * random.uniform(), r = std::sqrt(1 - z * z);
+      const Ray ray{{1, 1, 0.9}, {r * std::cos(phi), r * std::sin(phi), z}};
+      Echo echo;
+      double of_all = at_tray(rays.first_hit(patches, ray, &echo));
+      if (!echo.is_none()) follow_echo(rays, patches, echo, random, [&](const Hit& h) { of_all += at_tray(h); });
+      const double of_one = at_tray(one_way(rays, patches, ray, random));
+      all += of_all, square_all += of_all * of_all, one += of_one, square_one += of_one * of_one;
+    }
+    const double error = std::sqrt(square_all - all * all / kCount + square_one - one * one / kCount);
+    EXPECT_LT(error, 0.02 * all);
+    EXPECT_NEAR(one, all, 4 * error) << T;
+  }
+}
+
+class CubeOfPanes : public testing::TestWithParam<Method> {};
+
+TEST_P(CubeOfPanes, LightInItEndsThoughTheyLetNothingPass) {
+  for (const double T : {0.0, 1e-7}) {
+    const PatchSet patches = cube_of_panes(T);
+    const RayScene rays(patches);
+    LightSpec spec;
+    spec.luminaires = {test::point_lamp({1, 1, 0.9}, 100), test::point_lamp({1, 1, 1.8}, 100)};
+    const Lights lights = place_lights(spec, patches, rays);
+    const Solution s = solve_on_patches({patches, rays, lights}, {.method = GetParam()});
+    EXPECT_NEAR(s.energy.imbalance(), 0, 0.01) << T;
+    // On the tray: the lamp, and its images in the panes beside and above it. Over two panes comes a thousandth of it.
+    const GlassSheet sheet = fit_glass_sheet(T);
+    constexpr int kGrid = 64;
+    double expected = 0, found = 0;
+    for (int k = 0; k < kGrid * kGrid; ++k) {
+      const Vec3 x{0.7 + 0.4 * (k % kGrid + 0.5) / kGrid, 0.7 + 0.4 * (k / kGrid + 0.5) / kGrid, 0.6};
+      double E = of_lamp(100, {1, 1, 0.9}, x, {0, 0, 1});
+      for (const auto& [image, across] : {std::pair{Vec3{0, 1, 0.9}, Vec3{1, 0, 0}},
+                                          {{2, 1, 0.9}, {1, 0, 0}},
+                                          {{1, 0, 0.9}, {0, 1, 0}},
+                                          {{1, 2, 0.9}, {0, 1, 0}},
+                                          {{1, 1, 2.1}, {0, 0, 1}}})
+        E += of_lamp(100, image, x, {0, 0, 1}) *
+             sheet_shares(sheet, std::abs(dot(normalized(x - image), across))).reflectance;
+      expected += 0.16 / (kGrid * kGrid) * E;
+    }
+    for (std::size_t i = 0; i < patches.patch_count(); ++i)
+      if (is_of_tray(patches, PatchId{i})) found += patches.area[i] * s.E[i][0];
+    EXPECT_NEAR(found / expected, 1, 3e-3) << T;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes, testing::Values(Method::progressive, Method::path));
+
+TEST(Reflection, TheShareOfAnImageIsWhatIsLeftOnItsWay) {
+  PatchBuilder b(0.0);
+  b.rectangle({0, -20, -20}, {1, 0, 0}, {0, 40, 0});
+  b.mirror(0.5).rectangle({0, -20, -20}, {0, 40, 0}, {0, 0, 40}).rectangle({1, -20, -20}, {0, 40, 0}, {0, 0, 40});
+  const PatchSet patches = b.build();
+  LightSpec spec;
+  spec.luminaires = {test::point_lamp({0.5, 0, 0}, 100)};
+  const Lights lights = place_lights(spec, patches, RayScene(patches));
+  std::size_t longest = 0;
+  for (const PlacedLuminaire& luminaire : lights.luminaires) {
+    EXPECT_NEAR(luminaire.share, std::pow(0.5, luminaire.way.count), 1e-9);
+    longest = std::max<std::size_t>(longest, luminaire.way.count);
+  }
+  EXPECT_GT(longest, 3u);
+}
+
+TEST(Reflection, WhatFacetsWithoutImagesTurnOfTheSunIsToldAsLost) {
+  // A row of mirrors, each in a plane of its own, of equal size and equally lit: 64 of them have images.
+  for (const int facets : {60, 128}) {
+    PatchBuilder b(0.0);
+    b.mirror(0.8);
+    for (int k = 0; k < facets; ++k) {
+      const double turned = (k - facets / 2) * 1e-3;
+      b.rectangle({2.0 * k, 0, 0}, {std::cos(turned), 0, std::sin(turned)}, {0, 1, 0});
+    }
+    const PatchSet patches = b.build();
+    LightSpec spec;
+    spec.suns = {{{0, 0.6, 0.8}, Spectrum(1000)}};
+    const Lights lights = place_lights(spec, patches, RayScene(patches));
+    EXPECT_NEAR(lights.lost_in_mirrors, facets > 64 ? 0.8 * (facets - 64) / facets : 0.0, 5e-3) << facets;
+  }
+}
+
+TEST(Reflection, ASurfaceThatAnImageOfTheSunMayNotReachGetsNothingOfIt) {
+  // Mirrors all around that lean inwards, and a street between two: images over one and over several.
+  PatchBuilder b(0.0);
+  b.rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  b.mirror(0.9);
+  for (int k = 0; k < 12; ++k) {
+    const double phi = 2 * kPi * k / 12;
+    const Vec3 out{std::cos(phi), std::sin(phi), 0}, along{-out.y, out.x, 0};
+    b.rectangle(Vec3{2, 2, 0.2} + out * 3 - along * 0.7, along * 1.4, Vec3{0, 0, 2} - out * 0.2);
+  }
+  b.rectangle({1.5, 0, 0}, {0, 3, 0}, {0, 0, 2}).rectangle({2.5, 0, 0}, {0, 3, 0}, {0.05, 0, 2});
+  const PatchSet patches = b.build();
+  const RayScene rays(patches);
+  LightSpec spec;
+  spec.suns = {{normalized({0.6, 0.1, 0.6}), Spectrum(1000)}};
+  const Lights lights = place_lights(spec, patches, rays);
+  int reached = 0, skipped = 0, over_several = 0;
+  for (std::uint64_t t = 0; t < 400; ++t) {
+    RandomStream random(3, t);
+    const Vec3 at{4 * random.uniform(), 4 * random.uniform(), 1.5 * random.uniform()};
+    std::array<Vec3, 3> corners;
+    for (Vec3& c : corners) c = at + Vec3{random.uniform(), random.uniform(), random.uniform()} * 0.4;
+    for (const PlacedSun& sun : lights.suns) {
+      const bool may = may_reach(rays, sun, corners);
+      EXPECT_TRUE(may || sun.is_image());
+      bool gets = false;
+      for (std::uint32_t k = 0; k < 64; ++k) {
+        const auto u = sobol4(k, t);
+        const Vec3 p = point_on_triangle(corners, u[0], u[1]);
+        const Vec3 far = p + direction_to_sun(sun, u[2], u[3]) * (4 * rays.diameter());
+        gets = gets || (sun.is_image() && !rays.transmittance_by_mirrors(p, far, sun.way).is_black());
+      }
+      EXPECT_TRUE(may || !gets) << "over " << int{sun.way.count};
+      reached += gets, over_several += gets && sun.way.count > 1, skipped += !may;
+    }
+  }
+  EXPECT_GT(reached, 100);
+  EXPECT_GT(over_several, 5);
+  EXPECT_GT(skipped, 4 * reached);
 }
 
 class WhiteCavity : public testing::TestWithParam<Method> {};

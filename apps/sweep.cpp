@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "apps/exit_code.h"
@@ -38,6 +39,7 @@ constexpr double kFirstPart = 0.25;  ///< of its time, after which it is known h
 /// tenths of a per cent of error of its own, so not before.
 constexpr double kBlunt = 0.01, kVeryBlunt = 0.1;
 constexpr double kNextLevel = 2;  ///< a finer level takes so much longer at least
+constexpr int kMostAttempts = 16;
 constexpr std::uintmax_t kMostReport = 1 << 30;
 
 int lock_of(const fs::path& folder) {
@@ -45,6 +47,13 @@ int lock_of(const fs::path& folder) {
   if (found >= 0 && ::flock(found, LOCK_EX | LOCK_NB) == 0) return found;
   if (found >= 0) ::close(found);
   return -1;
+}
+
+/// Whether what was opened is still there by its name.
+bool is_at(int opened, const std::string& name) {
+  struct stat mine, there;
+  return ::fstat(opened, &mine) == 0 && ::stat(name.c_str(), &there) == 0 && mine.st_ino == there.st_ino &&
+         mine.st_dev == there.st_dev;
 }
 
 double left_until(Clock::time_point end) { return std::chrono::duration<double>(end - Clock::now()).count(); }
@@ -129,10 +138,21 @@ WorkFolder::WorkFolder(const fs::path& in) {
     fs::remove_all(entry->path(), ignored);
     ::close(lock);
   }
-  std::string name = (in / (std::string(kWork) + "XXXXXX")).string();
-  if (!::mkdtemp(name.data())) throw InputError(in.string() + ": cannot make a folder in it: " + std::strerror(errno));
-  path_ = name;
-  lock_ = lock_of(path_);
+  // Until it is locked, a sweep that starts beside this one may take it for what a killed one left.
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    std::string name = (in / (std::string(kWork) + "XXXXXX")).string();
+    if (!::mkdtemp(name.data()))
+      throw InputError(in.string() + ": cannot make a folder in it: " + std::strerror(errno));
+    lock_ = lock_of(name);
+    const bool is_taken = lock_ < 0 ? errno == EWOULDBLOCK || errno == ENOENT : !is_at(lock_, name);
+    if (!is_taken) {  // locked, or on a disk that has no locks, where nobody takes it either
+      path_ = name;
+      return;
+    }
+    if (lock_ >= 0) ::close(lock_);
+    ::rmdir(name.c_str());
+  }
+  throw InputError(in.string() + ": others take every folder that is made in it; give each sweep a folder of its own.");
 }
 
 WorkFolder::~WorkFolder() {
@@ -217,11 +237,11 @@ double sharpen(SweepReference& reference, const Sweep& sweep, Clock::time_point 
   double per_path = 0;  // [s]
   const auto add_paths = [&](double seconds_left) {
     while (!console.should_stop() && !is_sharp()) {
-      constexpr double kMostPaths = 1 << 22;  // a round, for counts in 32 bits
-      double paths = std::min(kMostPaths, static_cast<double>(reference.paths()));
+      constexpr double kLeastPaths = 64, kMostPaths = 1 << 22;  // a round, for counts in 32 bits
+      double paths = std::clamp(static_cast<double>(reference.paths()), kLeastPaths, kMostPaths);
       const double left = left_until(end) - seconds_left;
       if (per_path > 0) paths = std::min(paths, 0.95 * left / per_path);
-      if (paths < 64 || left <= 0) return;
+      if (paths < kLeastPaths || left <= 0) return;
       console.progress("reference", 1 - left_until(end) / time);
       const auto before = Clock::now();
       if (!reference.add_paths(static_cast<int>(paths), monitor)) return;

@@ -190,8 +190,8 @@ void add_formfactors_command(CLI::App& program, Task& task) {
   command
       .add_option(
           "--samples", arguments->most_samples,
-          "most rays for each pair of triangles with something in between (default: 32768 to 16777216, by how many "
-          "such pairs there are)")
+          "most rays that count for each pair of triangles with something in between, by 256s (default: 32768 to "
+          "16777216, by how many such pairs there are)")
       ->type_name("N")
       ->check(CLI::Range(256, 1 << 24).description(""));
   add_common_options(command, arguments->common);

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr double kUsualLimit = 600;        ///< [s]
 constexpr double kShareOfRuns = 0.75;      ///< of the time limit; the reference has the rest
 constexpr double kLeastForReference = 30;  ///< [s]
-constexpr int kFirstPaths = 64;
+constexpr int kFirstPaths = 8;
 constexpr const char* kFiles[] = {"tradeoff.csv", "tradeoff.svg", "tradeoff.png", "index.html"};
 
 struct Arguments {
@@ -106,22 +106,32 @@ ExitCode tradeoff_command(const Arguments& arguments, Console& console) {
 
   const double limit = arguments.time_limit.value_or(kUsualLimit);
   const std::uint64_t seed = arguments.common.seed.value_or(settings_of(scene).solve.seed);
-  SweepReference reference(scene, seed, console);
-  reference.add_paths(kFirstPaths, console.monitor());
+  const auto no_time = [&] {
+    console.warn("the time limit of " + rounded(limit) +
+                 " s came before a run ended; nothing is written. Give it more.");
+    return kAccuracyNotReached;
+  };
+  const auto end_of_runs = after(console.start(), kShareOfRuns * limit);
+  std::optional<SweepReference> made;
+  try {
+    made.emplace(scene, seed, console, end_of_runs);
+  } catch (const SweepReference::OutOfTime&) {
+    return no_time();
+  }
+  SweepReference& reference = *made;
+  Monitor in_time = console.monitor();
+  in_time.deadline = end_of_runs;
+  if (!reference.add_paths(kFirstPaths, in_time)) return no_time();
   make_folder(folder);
   console.has_result();  // from here on a signal must end the runs, too
   const WorkFolder work(folder);
-  const auto start = Clock::now(), end_of_runs = after(console.start(), kShareOfRuns * limit);
+  const auto start = Clock::now();
   const Sweep sweep = run_all(arguments.input, arguments.read, arguments.common, reference, work, end_of_runs, console);
   if (sweep.runs.empty() && console.should_stop()) {
     console.warn("interrupted before a run ended; nothing is written.");
     return kInterrupted;
   }
-  if (sweep.runs.empty() && end_of_runs <= Clock::now()) {
-    console.warn("the time limit of " + rounded(limit) +
-                 " s came before a run ended; nothing is written. Give it more.");
-    return kAccuracyNotReached;
-  }
+  if (sweep.runs.empty() && end_of_runs <= Clock::now()) return no_time();
   if (sweep.runs.empty()) throw InputError("no run gave a result: " + sweep.left_out.front().why);
 
   const double for_reference =

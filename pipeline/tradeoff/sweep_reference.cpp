@@ -27,7 +27,8 @@ constexpr std::size_t kPoints = 400, kPointsOfRoom = 64, kMostPoints = 2048;
 double squared(double x) { return x * x; }
 
 /// Patches of their own, with nothing simplified.
-PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observer& observer) {
+PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observer& observer,
+                                  std::chrono::steady_clock::time_point end) {
   Settings settings;
   settings.solve.seed = seed;
   settings.solve.accuracy = Accuracy::fine;
@@ -36,16 +37,20 @@ PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observ
   warn_about_scene(scene, observer);
   require_light(scene);
   StageSeconds seconds;
-  // Nobody interrupts it: the program's own handler ends it while there is no result.
+  // Nobody else interrupts it: the program's own handler ends it while there is no result.
+  const auto is_late = [end] { return std::chrono::steady_clock::now() >= end; };
   const Monitor monitor{.progress = [&](std::string_view stage, double done) { observer.progress(stage, done); },
-                        .interrupted = {}};
-  return *prepare_to_solve(scene, settings, observer, monitor, seconds);
+                        .interrupted = is_late};
+  std::optional<PreparedToSolve> prepared = prepare_to_solve(scene, settings, observer, monitor, seconds);
+  if (!prepared || is_late()) throw SweepReference::OutOfTime();
+  return std::move(*prepared);
 }
 
 }  // namespace
 
-SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer)
-    : seed_(seed), prepared_(prepare_reference(scene, seed, observer)) {
+SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer,
+                               std::chrono::steady_clock::time_point end)
+    : seed_(seed), prepared_(prepare_reference(scene, seed, observer, end)) {
   const PatchSet& patches = prepared_.scene.patches;
   const PointsByRoom by_room(patches);
   if (!(by_room.total() > 0)) throw InputError(scene.file + ": no surface that light can reach has an area.");

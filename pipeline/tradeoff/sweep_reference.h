@@ -2,6 +2,7 @@
 // What all rows of a sweep are judged by: unbiased paths at the same points of the surfaces, sharper with every round,
 // and gathers where these are not enough.
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -35,9 +36,12 @@ struct ReferenceRoom {
 /// were read: nothing is simplified, and no result that is judged has a part in it.
 class SweepReference {
  public:
+  struct OutOfTime {};
+
   /// scene    outlives it.
-  /// throws   InputError as solve_scene().
-  SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer);
+  /// throws   InputError as solve_scene(); OutOfTime when it is not ready at `end`.
+  SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer,
+                 std::chrono::steady_clock::time_point end = std::chrono::steady_clock::time_point::max());
   SweepReference(const SweepReference&) = delete;
   SweepReference& operator=(const SweepReference&) = delete;
 

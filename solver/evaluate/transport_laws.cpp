@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kStdErrors = 5;  // one in two million by chance
 constexpr const char* kByStake = "links by flux at stake are good for that flux, and not for every form factor";
+constexpr const char* kNoTime = "there was no time";
 constexpr double kFloatError = 1e-6;  // values, areas and scales, each rounded to float once
 
 std::size_t room_of(const PatchSet& patches, std::size_t i) { return patches.room.empty() ? 0 : patches.room[i]; }
@@ -83,13 +84,15 @@ std::vector<std::uint32_t> surface_of_nodes(const ElementTree& tree, const Surfa
   return of_node;
 }
 
+/// Less than all when the monitor stops it.
 Exchanges add_up_links(const PatchSet& leaves, const ElementTree& tree, const Transport& transport,
-                       const Surfaces& surfaces) {
+                       const Surfaces& surfaces, const Monitor& monitor) {
   const std::vector<std::uint32_t> of_node = surface_of_nodes(tree, surfaces);
   Exchanges sums{{}, std::vector<double>(surfaces.room.size(), 0.0)};
   std::map<std::uint32_t, double> arrives;  // of one row, by sender
   std::map<std::uint64_t, double> of_receiver;
   for (const LinkBlock& block : transport.blocks) {
+    if (monitor.should_stop()) break;
     std::size_t link = 0, row = 0;
     const float* share = block.shares.data();
     for (const Receiver& r : block.receivers) {
@@ -127,9 +130,10 @@ Exchanges add_up_links(const PatchSet& leaves, const ElementTree& tree, const Tr
 
 }  // namespace
 
-LawCheck reciprocity_of_matrix(const PatchSet& patches, const FormFactorMatrix& F) {
+LawCheck reciprocity_of_matrix(const PatchSet& patches, const FormFactorMatrix& F, const Monitor& monitor) {
   WorstInRooms worst(patches.rooms);
   for (std::size_t i = 0; i < F.n; ++i) {
+    if (monitor.should_stop()) return {Law::reciprocity, {}, kNoTime};
     double off = 0;
     for (std::size_t j = 0; j < i; ++j) {
       const double there = patches.area[i] * double{F.at(i, j)}, back = patches.area[j] * double{F.at(j, i)};
@@ -141,10 +145,12 @@ LawCheck reciprocity_of_matrix(const PatchSet& patches, const FormFactorMatrix& 
   return {Law::reciprocity, worst.rooms(), {}};
 }
 
-LawCheck reciprocity_of_links(const PatchSet& leaves, const ElementTree& tree, const Transport& transport) {
+LawCheck reciprocity_of_links(const PatchSet& leaves, const ElementTree& tree, const Transport& transport,
+                              const Monitor& monitor) {
   if (transport.bundle_rays == 0) return {Law::reciprocity, {}, kByStake};
   const Surfaces surfaces(leaves);
-  const Exchanges sums = add_up_links(leaves, tree, transport, surfaces);
+  const Exchanges sums = add_up_links(leaves, tree, transport, surfaces, monitor);
+  if (monitor.should_stop()) return {Law::reciprocity, {}, kNoTime};
   WorstInRooms worst(leaves.rooms);
   for (const auto& [pair, there] : sums.of_pair) {
     const auto g = static_cast<std::uint32_t>(pair >> 32), h = static_cast<std::uint32_t>(pair);

@@ -30,9 +30,12 @@ PatchGroups group_patches(const PatchSet& patches, GroupBy by);
 inline constexpr double kFactorError = 0.002;
 
 struct SurfaceFactorOptions {
-  /// Most point pairs for each pair of triangles with something in between, at least 256; 0: 2^28 divided by the number
-  /// of groups and that of such pairs which leave the group, no less than 32,768 and no more than 16,777,216.
+  /// Most point pairs for each pair of triangles with something in between, at least 256, beside those of pilots; 0:
+  /// 2^28 divided by the number of groups and that of such pairs which leave the group, no less than 32,768 and no more
+  /// than 16,777,216. Taken by 256s. Below 512 pilots have nothing to choose, and are what counts.
   int most_samples = 0;
+  /// About so many such pairs are held at a time, 48 bytes each; a group with more is looked at twice, in blocks.
+  std::size_t pairs_held = 1 << 20;
   std::uint64_t seed = 1;
 };
 
@@ -61,10 +64,14 @@ struct SurfaceFactors {
 /// others by as much, times their sampled visibility. Coarse triangles serve best: there is nothing to gain from small
 /// ones.
 ///
-/// A pilot of 256 samples for each pair of triangles tells where rays are worth most for the factor of their groups;
-/// its samples are thrown away, so choosing makes no bias. Pairs that want many are parted, so that what is seen
-/// through a gap is looked at there. Rays go on until std_error is below kFactorError of F, or most_samples are used
-/// up. Where no ray arrives 16,384 of them say so.
+/// A pilot of 256 samples for each pair of triangles tells where rays are worth most for the factor of their groups.
+/// Pairs that want many are parted, so that what is seen through a gap is looked at there. Rays go on until std_error
+/// is below kFactorError of F, or most_samples are used up: a pair that wants more is sampled anew, at most six times.
+/// Where no ray arrived 16,384 of them say so.
+///
+/// Bias: none by pilots, which are thrown away. Later rounds end when the very samples that are kept say that their
+/// error is small enough, which favours those with a smaller spread, or more light, than there is. By too little to be
+/// found: 600 factors through a hole that shows 6.6 % were 0.002 +- 0.006 % of F too high, each with 0.15 % of error.
 ///
 /// The two directions of a pair are sampled apart, which makes the reciprocity error an honest check.
 /// Threads: same bits for any thread count. Cost: 1 to 50 us for each unblocked pair, 0.1 us for each sample.

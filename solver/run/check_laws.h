@@ -24,6 +24,7 @@ struct UsedTransport {
 ///
 /// problem  with the elements that the solution belongs to, values as the method left them. unhalved: with the patches
 ///          that they were halved from, or the same.
+/// monitor  a law that there is no time for is not checked, and says so.
 /// Cost     4 million rays for form factors, a quarter of a million for energy, and the direct light of the patches
 /// twice more.
 std::vector<LawCheck> check_laws(const Problem& problem, const Problem& unhalved, const VertexLightmap& lightmap,

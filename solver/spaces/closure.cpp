@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include "solver/model/disjoint_sets.h"
 #include "solver/model/parallel.h"
@@ -13,7 +14,7 @@
 
 namespace clerestory {
 
-Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed) {
+Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed, const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
   const RayScene& rays = problem.rays;
   const std::vector<LightArea> slits = slits_among(problem.lights.openings);
@@ -24,8 +25,13 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
   // The first few neighbours of each patch are enough to tell spaces apart.
   constexpr int kNeighbours = 16;
   std::vector<std::array<PatchId, kNeighbours>> neighbours(n);
+  std::atomic<bool> stopped = false;
   parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      if (stopped || (i % 16 == 0 && monitor.should_stop())) {
+        stopped = true;
+        return;
+      }
       const Frame frame(patches.normal[i]);
       const auto corners = patches.corner_positions(PatchId{i});
       Spectrum arrives(0.0), escapes(0.0);
@@ -54,6 +60,7 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
     }
   });
 
+  closure.complete = !stopped;
   DisjointSets spaces(n);
   for (std::size_t i = 0; i < n; ++i)
     for (const PatchId q : neighbours[i])

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/illumination/problem.h"
+#include "solver/model/monitor.h"
 
 namespace clerestory {
 
@@ -16,10 +17,11 @@ struct Closure {
   std::vector<std::uint32_t> space;  ///< N, number of the space that patch i is in, 0 .. spaces - 1
   std::size_t spaces = 0;
   unsigned long long rays = 0;
+  bool complete = true;  ///< false when the monitor stopped the work: nothing of it is to be used
 };
 
 /// By rays_per_patch (at least 8) stratified cosine rays; exactly 1 and 0 in a closed room without glass. What sees
 /// each other through slits only is not one space: light that is even outdoors is not so in a dark room behind a slit.
-Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed);
+Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_t seed, const Monitor& monitor = {});
 
 }  // namespace clerestory

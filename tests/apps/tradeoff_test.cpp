@@ -1,6 +1,7 @@
 // clerestory tradeoff: a sweep as a user runs it.
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -133,7 +134,22 @@ TEST(Tradeoff, WithoutTimeForOneRunNothingIsWritten) {
   const ProgramRun run = run_program({"tradeoff", coarse_room(folder, ""), "-o", out / "dir", "--time-limit", "0.01"});
   EXPECT_EQ(run.exit_code, 4) << run.err;
   EXPECT_NE(run.err.find("nothing is written"), std::string::npos) << run.err;
-  EXPECT_TRUE(fs::is_empty(out / "dir"));
+  EXPECT_FALSE(fs::exists(out / "dir"));
+}
+
+TEST(Tradeoff, TheTimeLimitHoldsForTheReferenceToo) {
+  const TempFolder folder, out;
+  BoxScene{}.write(folder);
+  // Closed, and next to nothing is absorbed: a path does not end.
+  const std::string scene = folder.write("white.json", R"({ "geometry": [{ "file": "room.obj" }],
+    "materials": { "wall": { "sides": 1, "reflectance": 0.99999 } },
+    "luminaires": [{ "type": "point", "position": [1, 1, 2], "luminous_flux": 800 }] })");
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramRun run = run_program({"tradeoff", scene, "-o", out / "dir", "--time-limit", "1"});
+  EXPECT_EQ(run.exit_code, 4) << run.err;
+  EXPECT_NE(run.err.find("nothing is written"), std::string::npos) << run.err;
+  EXPECT_FALSE(fs::exists(out / "dir"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(Tradeoff, CtrlCEndsTheRunsAndWritesThoseThatHadEnded) {

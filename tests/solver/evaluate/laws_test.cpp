@@ -96,6 +96,15 @@ TEST_F(LawsOfMatrix, PairsThatLoseATenthOfTheirLightBothWaysBreakRowSumsAndNotRe
   expect_broken_in_hall(row_sums());
 }
 
+TEST_F(LawsOfMatrix, WithoutTimeTheyAreNotCheckedAndSaySo) {
+  const Monitor late{.progress = {}, .interrupted = {}, .deadline = std::chrono::steady_clock::now()};
+  const LawCheck reciprocity = reciprocity_of_matrix(patches_, F_, late);
+  EXPECT_EQ(reciprocity.not_checked, "there was no time");
+  EXPECT_TRUE(reciprocity.rooms.empty());
+  EXPECT_FALSE(measure_closure({patches_, rays_, dark_}, kRays, kOtherSeed, late).complete);
+  EXPECT_TRUE(measure_closure({patches_, rays_, dark_}, 8, kOtherSeed).complete);
+}
+
 class LawsOfLinks : public testing::Test {
  protected:
   LawsOfLinks() {
@@ -104,7 +113,9 @@ class LawsOfLinks : public testing::Test {
     options.shortest_edge = 0.5, options.keep = &kept_;
     hierarchical({patches_, rays_, dark_}, mesh, options);
   }
-  LawCheck reciprocity() const { return reciprocity_of_links(kept_.elements, kept_.tree, kept_.transport); }
+  LawCheck reciprocity(const Monitor& monitor = {}) const {
+    return reciprocity_of_links(kept_.elements, kept_.tree, kept_.transport, monitor);
+  }
   LawCheck row_sums() const {
     return row_sums_of_links(kept_.elements, kept_.tree, kept_.transport,
                              measure_closure({kept_.elements, rays_, dark_}, kRays, kOtherSeed), kRays);
@@ -131,6 +142,12 @@ class LawsOfLinks : public testing::Test {
   Lights dark_;
   KeptTransport kept_;
 };
+
+TEST_F(LawsOfLinks, WithoutTimeReciprocityIsNotCheckedAndSaysSo) {
+  const Monitor late{.progress = {}, .interrupted = {}, .deadline = std::chrono::steady_clock::now()};
+  EXPECT_EQ(reciprocity(late).not_checked, "there was no time");
+  EXPECT_EQ(reciprocity().not_checked, "");
+}
 
 TEST_F(LawsOfLinks, HoldWithinTheErrorOfTheirRays) {
   ASSERT_TRUE(kept_.complete);

@@ -138,6 +138,42 @@ TEST(SurfaceFormFactors, WhereRaysAreUsedUpTheStandardErrorSaysWhatWasReached) {
   EXPECT_TRUE(factor(factors, groups, "floor", "plate").reached());
 }
 
+TEST(SurfaceFormFactors, NoPairHasMoreRaysThanWereAskedFor) {
+  const PatchSet patches = plate_with_hole(0.1);
+  const PatchGroups groups = group_patches(patches, GroupBy::object);
+  const auto rays_for = [&](int most) {
+    const SurfaceFactors factors =
+        surface_form_factors(patches, RayScene(patches), groups, {.most_samples = most, .seed = 3});
+    EXPECT_GT(factors.pairs_sampled, 0u);
+    return factors.rays / factors.pairs_sampled;
+  };
+  EXPECT_EQ(rays_for(300), 256u);        // the pilot is all of it
+  EXPECT_EQ(rays_for(600), 256u + 512);  // the pilot, and what counts
+  EXPECT_LE(rays_for(1000), 256u + 768);
+}
+
+TEST(SurfaceFormFactors, WhatAGroupFindsDoesNotDependOnHowManyPairsAreHeldAtATime) {
+  const PatchSet patches = test::RoomWithBlocks{.room_cells = {3, 3, 2}, .block_cells = 1}.build();
+  const RayScene rays(patches);
+  const PatchGroups groups = group_patches(patches, GroupBy::object);
+  const SurfaceFactors at_once = surface_form_factors(patches, rays, groups, {.most_samples = 4096});
+  const SurfaceFactors in_blocks =
+      surface_form_factors(patches, rays, groups, {.most_samples = 4096, .pairs_held = 100});
+  EXPECT_EQ(in_blocks.pairs_sampled, at_once.pairs_sampled);
+  EXPECT_EQ(in_blocks.pairs_unblocked, at_once.pairs_unblocked);
+  const auto pilots = static_cast<double>(256 * at_once.pairs_sampled);
+  // Some groups were looked at twice, and no more was spent on what counts.
+  EXPECT_GT(static_cast<double>(in_blocks.rays), static_cast<double>(at_once.rays) + 0.1 * pilots);
+  EXPECT_LT(static_cast<double>(in_blocks.rays) - pilots, 1.1 * static_cast<double>(at_once.rays));
+  ASSERT_EQ(in_blocks.rows.size(), at_once.rows.size());
+  for (std::size_t k = 0; k < at_once.rows.size(); ++k) {
+    const SurfaceFactor &a = at_once.rows[k], &b = in_blocks.rows[k];
+    EXPECT_NEAR(a.F, b.F, 4 * std::hypot(a.std_error, b.std_error) + 1e-12) << k;
+    EXPECT_EQ(a.reached(), b.reached()) << k << ": " << a.std_error / a.F << ", " << b.std_error / b.F;
+    EXPECT_NEAR(b.std_error, a.std_error, 0.5 * a.std_error) << k;
+  }
+}
+
 TEST(GroupPatches, NamesSurfacesByTheirPlane) {
   const PatchSet patches =
       PatchBuilder().surface("room").box({0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 1}, {2, 2, 2}, true).build();

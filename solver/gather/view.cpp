@@ -39,8 +39,7 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
       if (found) found->add(k, RowEntry::of_patch(hit.patch, share * hit.transmittance));
     }
     if (has_glass && !echoes[k].is_none())
-      values[k] +=
-          turned_back(echoes[k], rays[k], owner == kNobody ? density[k] : 0, luminous_mean(values[k]), k, found);
+      values[k] += turned_back(echoes[k], rays[k], owner == kNobody ? density[k] : 0, k, found);
   }
 }
 
@@ -59,18 +58,12 @@ double View::share_of_bundle(const Hit& hit, const Ray& ray, double density) con
                            plan_.rays_in_mirror * light_.sampler.density(hit.patch, behind, distance, cosine, true));
 }
 
-Spectrum View::turned_back(const Echo& echo, const Ray& ray, double density, double goes_on, std::size_t k,
-                           FoundByRays* found) const {
-  // By judgement: the noise of a ray that is sent once in eight times is that of eight times what is usual around it.
-  constexpr double kLeastChance = 1.0 / 8, kMuch = 8;
-  const double usual = luminous_mean(echo.share) * light_.bright_areas.ambient;
-  const double chance = goes_on > 0 ? std::clamp(kMuch * usual / goes_on, kLeastChance, 1.0) : 1;
+Spectrum View::turned_back(const Echo& echo, const Ray& ray, double density, std::size_t k, FoundByRays* found) const {
   RandomStream random(key_of(ray, kEchoes));
-  if (!(random.uniform() < chance)) return Spectrum(0.0);
   const Problem& problem = light_.problem;
   Spectrum sum(0.0);
   follow_echo(problem.rays, problem.patches, echo, random, [&](const Hit& hit) {
-    const Spectrum weight = hit.transmittance / chance;
+    const Spectrum weight = hit.transmittance;
     if (hit.escaped()) {
       const Vec3& direction = hit.direction(ray);
       sum += light_.sky(direction) * std::numbers::pi * weight;

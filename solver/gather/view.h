@@ -65,9 +65,8 @@ class View {
   const std::vector<LightTree::Receiver>& in_mirrors() const { return in_mirrors_; }
 
  private:
-  /// goes_on: value of the ray whose echo it is. found: as of look(), for ray k.
-  Spectrum turned_back(const Echo& echo, const Ray& ray, double density, double goes_on, std::size_t k,
-                       FoundByRays* found) const;
+  /// found: as of look(), for ray k.
+  Spectrum turned_back(const Echo& echo, const Ray& ray, double density, std::size_t k, FoundByRays* found) const;
   /// Of what a ray brings from a bright patch, the part that shadow rays do not: density of such rays per solid angle.
   double share_of_bundle(const Hit& hit, const Ray& ray, double density) const;
   double slit_gain(std::uint32_t number, const Vec3& direction, double distance) const;

@@ -276,10 +276,12 @@ SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_e
   UsedTransport used;
   KeptTransport* const keep_links = options.check_laws ? &used.links : nullptr;
   FormFactorMatrix* const keep_matrix = options.check_laws ? &used.matrix : nullptr;
+  constexpr double kShareToCheck = 0.1;  // of the time that is left
+  const Monitor solving = options.check_laws ? monitor.within((1 - kShareToCheck) * monitor.seconds_left()) : monitor;
   SolvedPatches solved =
       options.method == Method::hierarchical
-          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, monitor, debug, around, keep_links)
-          : solve_by_other_method(problem, std::move(map), options, monitor, keep_matrix);
+          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, solving, debug, around, keep_links)
+          : solve_by_other_method(problem, std::move(map), options, solving, keep_matrix);
   if (solved.rather) return solved;
   if (options.check_laws) {
     const PatchSet& elements = solved.elements.patch_count() > 0 ? solved.elements : problem.patches;

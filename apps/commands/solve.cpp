@@ -155,8 +155,9 @@ void add_solve_command(CLI::App& program, Task& task) {
                    "draft, standard or fine (default: standard)");
   add_checked_word(command, "--oracle", s.oracle, problem_with_oracle,
                    "by what the hierarchical method refines: error, or bf, the classic flux at stake (default: error)");
-  add_positive_option(command, "--target-error", s.target_error, "SHARE",
-                      "from a draft on as finely as the measured RMS relative error, also of the worst room, needs; 0.02 for 2 %");
+  add_positive_option(
+      command, "--target-error", s.target_error, "SHARE",
+      "from a draft on as finely as the measured RMS relative error, also of the worst room, needs; 0.02 for 2 %");
   command.add_flag("--no-error", s.no_error, "do not measure the error of the result")->excludes("--target-error");
   command
       .add_option(
@@ -167,7 +168,8 @@ void add_solve_command(CLI::App& program, Task& task) {
       ->excludes("--no-error");
   command.add_flag("--check", s.check,
                    "check the result against the laws of radiosity, room by room; exit code 4 when one is broken");
-  add_positive_option(command, "--time-limit", s.time_limit, "S", "the best result of so many seconds, up to the accuracy asked for");
+  add_positive_option(command, "--time-limit", s.time_limit, "S",
+                      "the best result of so many seconds, up to the accuracy asked for");
   add_checked_word(command, "--memory-limit", s.memory_limit, problem_with_memory,
                    "coarser rather than more memory than this: 500MiB, 2GiB, or a number of MiB (default: none)")
       ->type_name("SIZE");

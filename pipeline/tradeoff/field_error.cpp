@@ -1,9 +1,8 @@
 #include "pipeline/tradeoff/field_error.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
+#include "solver/geometry/triangle.h"
 #include "solver/model/parallel.h"
 
 namespace clerestory {
@@ -12,28 +11,6 @@ namespace {
 constexpr double kFacesAsOne = 0.7;  ///< cosine; facets of a curved surface turn a little when they are simplified
 
 using Corners = std::array<Vec3, 3>;
-
-/// Of the point of a triangle that is nearest to p: barycentric coordinates.
-/// Source: Ericson, "Real-Time Collision Detection", 2005, 5.1.5.
-Vec3 nearest_weights(const Corners& c, const Vec3& p) {
-  const Vec3 ab = c[1] - c[0], ac = c[2] - c[0], ap = p - c[0];
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  const Vec3 bp = p - c[1];
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  const Vec3 cp = p - c[2];
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  const double va = d3 * d6 - d5 * d4, along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return {0, 1 - along, along};
-  const double all = va + vb + vc;
-  return {va / all, vb / all, vc / all};
-}
 
 /// Illuminance of the nearest triangle within `tolerance`; less than 0: there is none.
 double value_at(const ReferencePoint& at, const WrittenResult& result, const std::vector<float>& E, double tolerance) {
@@ -48,12 +25,12 @@ double value_at(const ReferencePoint& at, const WrittenResult& result, const std
     if (is_beside) continue;
     const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
     if (!(dot(n, at.n) > kFacesAsOne * length(n))) continue;
-    const Vec3 w = nearest_weights(c, at.p);
-    const Vec3 off = c[0] * w.x + c[1] * w.y + c[2] * w.z - at.p;
+    const Vec3 x = nearest_point(c, at.p), off = x - at.p;
     if (!(dot(off, off) <= nearest)) continue;
     nearest = dot(off, off);
-    found =
-        w.x * static_cast<double>(E[t[0]]) + w.y * static_cast<double>(E[t[1]]) + w.z * static_cast<double>(E[t[2]]);
+    found = 0;
+    for (std::size_t k = 0; k < 3; ++k)  // linear between the corners: by the parts of the area
+      found += dot(cross(c[(k + 1) % 3] - x, c[(k + 2) % 3] - x), n) / dot(n, n) * static_cast<double>(E[t[k]]);
   }
   return found;
 }

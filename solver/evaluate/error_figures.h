@@ -41,8 +41,8 @@ struct Comparison {
 /// confidence. Where most paths find no light, as in a room lit through a crack, they correct nothing, and how far off
 /// they are is in the confidence.
 ///
-/// Where paths have less noise than gathers, as where much light is straight from lamps and there are many of them, they
-/// are alone.
+/// Where paths have less noise than gathers, as where much light is straight from lamps and there are many of them,
+/// they are alone.
 ///
 /// Where nothing is left of the mean square beyond what chance may leave, all are upper bounds.
 /// Source: U-statistics for the variance of paired estimates (Hoeffding 1948).

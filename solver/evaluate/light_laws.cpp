@@ -18,9 +18,6 @@
 namespace clerestory {
 namespace {
 
-std::size_t room_of(const PatchSet& patches, std::size_t i) { return patches.room.empty() ? 0 : patches.room[i]; }
-std::size_t room_count(const PatchSet& patches) { return std::max<std::size_t>(1, patches.rooms.size()); }
-
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// Largest finite value of each room.
@@ -61,7 +58,7 @@ double unsure(const Estimate& a, const Estimate& b, double std_errors) {
 /// What the lights bring to each room [W]. The two halves of the rays differ by what they leave open.
 std::vector<Estimate> direct_flux(const Problem& problem, std::uint64_t seed, const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  std::vector<Estimate> flux(room_count(patches));
+  std::vector<Estimate> flux(patches.room_count());
   const Illumination light(problem);
   if (light.sky.dark() && problem.lights.suns.empty() && problem.lights.luminaires.empty()) return flux;
   const auto half = [&](std::uint64_t number) {
@@ -77,7 +74,7 @@ std::vector<Estimate> direct_flux(const Problem& problem, std::uint64_t seed, co
   const Field a = half(0), b = half(1);
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {
     const double x = patches.area[i] * luminous_mean(a[i]), y = patches.area[i] * luminous_mean(b[i]);
-    Estimate& room = flux[room_of(patches, i)];
+    Estimate& room = flux[patches.room_of(i)];
     room.value += (x + y) / 2;
     const double variance = (x - y) * (x - y) / 4;
     room.variance += variance, room.of_variance += variance * variance;
@@ -93,11 +90,11 @@ struct Sender {
 };
 
 std::vector<Sender> senders(const PatchSet& patches, const Field& B) {
-  std::vector<Sender> rooms(room_count(patches));
+  std::vector<Sender> rooms(patches.room_count());
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {
     const double flux = patches.area[i] * luminous_mean(B[i]);
     if (!(flux > 0)) continue;
-    Sender& room = rooms[room_of(patches, i)];
+    Sender& room = rooms[patches.room_of(i)];
     room.up_to.push_back(room.flux() + flux);
     room.patch.push_back(static_cast<std::uint32_t>(i));
   }
@@ -134,7 +131,7 @@ std::vector<Landed> cast(const Problem& problem, const Field& B, const Sender& r
       const Ray ray{problem.rays.off_surface(from, frame.n), cosine_direction(frame, u[0], u[1])};
       const Hit hit = one_way(problem.rays, patches, ray, random);
       if (!hit.patch.valid()) continue;
-      landed[k] = {static_cast<std::uint32_t>(room_of(patches, hit.patch.value)),
+      landed[k] = {static_cast<std::uint32_t>(patches.room_of(hit.patch.value)),
                    static_cast<float>(luminous_mean(hit.transmittance * B[i]) / luminous_mean(B[i]))};
     }
   });
@@ -159,29 +156,29 @@ void add_landed(const std::vector<Landed>& landed, double flux, std::vector<Esti
 
 LawCheck no_negative_light(const PatchSet& patches, const VertexLightmap& lightmap, const Solution& solution) {
   constexpr double kRounding = 1e-4;
-  Largest largest(room_count(patches));
-  for (std::size_t i = 0; i < solution.E.size(); ++i) largest.see(room_of(patches, i), solution.E[i].max());
+  Largest largest(patches.room_count());
+  for (std::size_t i = 0; i < solution.E.size(); ++i) largest.see(patches.room_of(i), solution.E[i].max());
   for (std::size_t p = 0; p < lightmap.E.size(); ++p)
-    largest.see(room_of(patches, lightmap.patch_of_point[p]), lightmap.E[p].max());
+    largest.see(patches.room_of(lightmap.patch_of_point[p]), lightmap.E[p].max());
   WorstInRooms worst(patches.rooms);
   const auto see = [&](std::size_t room, const Spectrum& E) {
     const double below = all_finite(E) ? std::max(0.0, -E.min()) : kNoNumber;
     worst.see(room, below == 0 ? 0 : below / largest.at(room), kRounding);
   };
-  for (std::size_t i = 0; i < solution.E.size(); ++i) see(room_of(patches, i), solution.E[i]);
-  for (std::size_t p = 0; p < lightmap.E.size(); ++p) see(room_of(patches, lightmap.patch_of_point[p]), lightmap.E[p]);
+  for (std::size_t i = 0; i < solution.E.size(); ++i) see(patches.room_of(i), solution.E[i]);
+  for (std::size_t p = 0; p < lightmap.E.size(); ++p) see(patches.room_of(lightmap.patch_of_point[p]), lightmap.E[p]);
   return {Law::no_negative_light, worst.rooms(), {}};
 }
 
 LawCheck radiosity_from_irradiance(const PatchSet& patches, const Solution& solution) {
   constexpr double kRounding = 1e-9;
-  Largest largest(room_count(patches));
-  for (std::size_t i = 0; i < solution.B.size(); ++i) largest.see(room_of(patches, i), solution.B[i].max());
+  Largest largest(patches.room_count());
+  for (std::size_t i = 0; i < solution.B.size(); ++i) largest.see(patches.room_of(i), solution.B[i].max());
   WorstInRooms worst(patches.rooms);
   for (std::size_t i = 0; i < solution.B.size(); ++i) {
     const Spectrum rest = solution.B[i] - patches.M[i] - patches.scattered(solution.E, i);
     const double off = all_finite(rest) ? std::max(rest.max(), -rest.min()) : kNoNumber;
-    worst.see(room_of(patches, i), off == 0 ? 0 : off / largest.at(room_of(patches, i)), kRounding);
+    worst.see(patches.room_of(i), off == 0 ? 0 : off / largest.at(patches.room_of(i)), kRounding);
   }
   return {Law::radiosity, worst.rooms(), {}};
 }
@@ -203,7 +200,7 @@ LawCheck energy_of_rooms(const Problem& problem, const Problem& unhalved, const 
   }
   std::vector<Estimate> found(arrives.size());
   for (std::size_t i = 0; i < solution.E.size(); ++i) {
-    Estimate& room = found[room_of(patches, i)];
+    Estimate& room = found[patches.room_of(i)];
     room.value += patches.area[i] * luminous_mean(solution.E[i]);
     if (solution.std_error.size() > 0)
       room.variance += std::pow(patches.area[i] * luminous_mean(solution.std_error[i]), 2);

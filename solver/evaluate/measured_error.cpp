@@ -149,7 +149,7 @@ std::vector<ErrorOfPart> parts_of(const PointsByRoom& by_room, const PatchSet& p
   if (patches.rooms.empty()) parts[0].name = "all surfaces";
   for (std::size_t k = 0; k < parts.size(); ++k) parts[k].area = by_room.areas()[k];
   for (std::size_t i = 0; i < patches.patch_count(); ++i)
-    parts[by_room.room_of(i)].mean_illuminance += photometric(E[i]) * patches.area[i];
+    parts[patches.room_of(i)].mean_illuminance += photometric(E[i]) * patches.area[i];
   for (ErrorOfPart& p : parts)
     if (p.area > 0) p.mean_illuminance /= p.area;
   return parts;

@@ -12,13 +12,13 @@ PointsByRoom::PointsByRoom(const PatchSet& patches)
     : patches_(patches),
       order_(patches.patch_count()),
       cumulative_(patches.patch_count()),
-      areas_(std::max<std::size_t>(1, patches.rooms.size())),
+      areas_(patches.room_count()),
       weight_(areas_.size()) {
   std::iota(order_.begin(), order_.end(), 0u);
-  std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) { return room_of(i); });
+  std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) { return patches_.room_of(i); });
   const double all = patches.total_area();
   if (!(all > 0)) return;
-  for (const std::uint32_t i : order_) areas_[room_of(i)] += patches.area[i];
+  for (const std::uint32_t i : order_) areas_[patches_.room_of(i)] += patches.area[i];
   double roots = 0, large = 0;
   for (const double area : areas_) roots += std::sqrt(area), large += area >= kLargeRoom * all;
   large_rooms_ = static_cast<std::size_t>(large);
@@ -28,7 +28,7 @@ PointsByRoom::PointsByRoom(const PatchSet& patches)
     weight_[k] = looks > 0 ? a / all / looks : 0;
   }
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    const double weight = weight_[room_of(order_[k])];
+    const double weight = weight_[patches_.room_of(order_[k])];
     cumulative_[k] = total_ += weight > 0 ? patches.area[order_[k]] / weight : 0;
   }
 }
@@ -43,7 +43,7 @@ std::vector<PointInRoom> PointsByRoom::points(std::size_t count, std::uint64_t k
         std::min<std::size_t>(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1);
     const std::size_t patch = order_[k];
     const double u = random.uniform(), v = random.uniform();
-    points.push_back({patch, room_of(patch), weight_[room_of(patch)], u, v});
+    points.push_back({patch, patches_.room_of(patch), weight_[patches_.room_of(patch)], u, v});
   }
   return points;
 }

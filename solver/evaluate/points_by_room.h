@@ -29,7 +29,6 @@ class PointsByRoom {
   double total() const { return total_; }  ///< 0: nothing has an area
   std::size_t large_rooms() const { return large_rooms_; }
   const std::vector<double>& areas() const { return areas_; }  ///< by room [m2]
-  std::uint32_t room_of(std::size_t patch) const { return patches_.room.empty() ? 0u : patches_.room[patch]; }
   /// `count` of them, stratified: one in each of so many stretches alike.
   std::vector<PointInRoom> points(std::size_t count, std::uint64_t key) const;
 

@@ -19,8 +19,6 @@ constexpr const char* kByStake = "links by flux at stake are good for that flux,
 constexpr const char* kNoTime = "there was no time";
 constexpr double kFloatError = 1e-6;  // values, areas and scales, each rounded to float once
 
-std::size_t room_of(const PatchSet& patches, std::size_t i) { return patches.room.empty() ? 0 : patches.room[i]; }
-
 /// Patches of one surface in one room.
 struct Surfaces {
   std::vector<std::uint32_t> of_patch;  ///< N
@@ -30,7 +28,7 @@ struct Surfaces {
   explicit Surfaces(const PatchSet& patches) : of_patch(patches.patch_count()) {
     std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> number;
     for (std::size_t i = 0; i < of_patch.size(); ++i) {
-      const std::size_t in = room_of(patches, i);
+      const std::size_t in = patches.room_of(i);
       const auto [at, is_new] =
           number.try_emplace({in, patches.surface(PatchId{i}).value}, static_cast<std::uint32_t>(room.size()));
       if (is_new) room.push_back(in), area.push_back(0), area2.push_back(0);
@@ -140,7 +138,7 @@ LawCheck reciprocity_of_matrix(const PatchSet& patches, const FormFactorMatrix& 
       const double most = std::max(there, back), difference = std::abs(there - back);
       if (difference > off * most || !std::isfinite(difference)) off = difference / most;
     }
-    worst.see(room_of(patches, i), off, kFloatError);
+    worst.see(patches.room_of(i), off, kFloatError);
   }
   return {Law::reciprocity, worst.rooms(), {}};
 }
@@ -176,12 +174,12 @@ LawCheck row_sums_of_matrix(const PatchSet& patches, const FormFactorMatrix& F, 
   for (std::size_t i = 0; i < F.n; ++i) {
     const double arrives = luminous_mean(closure.arrives[i]), difference = F.row_sum[i] * F.row_gain(i) - arrives;
     if (F.closed[i] && arrives > 1 - 1e-9) {
-      worst.see(room_of(patches, i), std::abs(difference), kFloatError);
+      worst.see(patches.room_of(i), std::abs(difference), kFloatError);
       continue;
     }
     const double error2 = variance_of_share(arrives, rays), A = patches.area[i];
     const std::uint32_t g = surfaces.of_patch[i];
-    worst.see(room_of(patches, i), std::abs(difference), kStdErrors * (std::sqrt(error2) + F.row_error[i]));
+    worst.see(patches.room_of(i), std::abs(difference), kStdErrors * (std::sqrt(error2) + F.row_error[i]));
     off[g] += A * difference, variance[g] += A * A * error2, own[g] += A * F.row_error[i];
   }
   for (std::size_t g = 0; g < off.size(); ++g)

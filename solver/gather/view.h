@@ -44,8 +44,7 @@ class View {
 
   /// Up to 16 rays of one kind: pi times the radiance along each that belongs to `owner`, one of the plan's
   /// openings or bright areas, or kNobody; 0 along the others. density[k]: rays of that kind per solid angle.
-  /// What panes turn back belongs to the owner of the ray that goes on through them. Its ray is sent by the chance that
-  /// it brings much beside that: through a window by day hardly ever, at night always.
+  /// What panes turn back belongs to the owner of the ray that goes on through them.
   /// found: null, or set to what was met.
   void look(std::span<const Vec3> directions, std::span<const double> density, std::uint32_t owner,
             std::span<Spectrum> values, FoundByRays* found = nullptr) const;

@@ -49,10 +49,9 @@ class Collector {
       else if (hit.patch.valid() && !comes_by_slit(ray.origin, ray.direction, hit.first))
         take_patch(ray, hit, bundle.from[k]->normal, shares, sums);
       for (std::size_t m = 0; m < n; ++m) sums.all[m] += shares[m];
-      if (bundle.echoes.empty() || bundle.echoes[k].is_none()) continue;
-      RandomStream random = echo_numbers(key, k);
+      if (bundle.echoes.empty()) continue;
       const Problem& problem = around_.light.problem;
-      follow_echo(problem.rays, problem.patches, bundle.echoes[k], random, [&](const Hit& echo) {
+      follow_echo(problem.rays, problem.patches, bundle.echoes[k], key, k, [&](const Hit& echo) {
         if (echo.escaped())
           take_escape(ray, echo, true, shares, sums);
         else if (echo.patch.valid())

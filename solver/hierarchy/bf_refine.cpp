@@ -99,8 +99,7 @@ class PatchLinks {
                                {problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), frame.n),
                                 cosine_direction(frame, u[0], u[1])},
                                &echo);
-        RandomStream random = echo_numbers(key, k);
-        follow_echo(problem.rays, problem.patches, echo, random, [&](const Hit& hit) {
+        follow_echo(problem.rays, problem.patches, echo, key, k, [&](const Hit& hit) {
           if (hit.patch.valid())
             links_[v - root_].push_back({scene_.tree.node_of_patch[hit.patch],
                                          static_cast<float>(luminous_mean(hit.transmittance) / kRaysForEchoes)});

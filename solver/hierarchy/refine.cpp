@@ -81,11 +81,8 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
         else if (h.patch.valid())
           value[s] += weight * luminous_mean(B[h.patch] * h.transmittance);
       };
-      if (!echo.is_none()) {
-        // All parts share the numbers.
-        RandomStream random = echo_numbers(key, static_cast<std::uint64_t>(k));
-        follow_echo(problem.rays, patches, echo, random, [&](const Hit& h) { take(h, 1); });
-      }
+      // All parts share the numbers.
+      follow_echo(problem.rays, patches, echo, key, static_cast<std::uint64_t>(k), [&](const Hit& h) { take(h, 1); });
       if (!hit.patch.valid()) {
         take(hit, 1);
         continue;
@@ -166,12 +163,11 @@ struct Scale {
 
 /// By room. leaves: with the irradiance E.
 std::vector<Scale> scales_of(const PatchSet& patches, const PatchSet& leaves, const Field& E) {
-  const auto room_of = [](const PatchSet& p, std::size_t i) { return p.room.empty() ? 0u : p.room[i]; };
-  std::vector<Scale> scales(std::max<std::size_t>(1, patches.rooms.size()));
+  std::vector<Scale> scales(patches.room_count());
   std::vector<double> count(scales.size());
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {
-    scales[room_of(patches, i)].area += patches.area[i];
-    ++count[room_of(patches, i)];
+    scales[patches.room_of(i)].area += patches.area[i];
+    ++count[patches.room_of(i)];
   }
   struct Lit {
     std::uint32_t room;
@@ -180,7 +176,7 @@ std::vector<Scale> scales_of(const PatchSet& patches, const PatchSet& leaves, co
   std::vector<Lit> lit(leaves.patch_count());
   std::vector<double> half(scales.size());
   for (std::size_t i = 0; i < lit.size(); ++i) {
-    lit[i] = {room_of(leaves, i), luminous_mean(E[i]), leaves.area[i]};
+    lit[i] = {leaves.room_of(i), luminous_mean(E[i]), leaves.area[i]};
     half[lit[i].room] += leaves.area[i] / 2;
   }
   std::ranges::sort(lit, {}, [](const Lit& l) { return std::pair(l.room, l.light); });
@@ -212,7 +208,7 @@ std::size_t refine(ElementMesh& mesh, const Illumination& light, const Field& E,
         const PatchId p{std::size_t{mesh[e].patch}};
         const double edge = mesh.longest_edge(e);
         const auto corners = mesh.corner_positions(e);
-        const Scale& scale = scales[patches.room.empty() ? 0 : patches.room[p]];
+        const Scale& scale = scales[patches.room_of(p)];
         const double weight = luminous_mean(patches.albedo(p)) * triangle_area(corners) / scale.area;
         // Little varies by more than twice its mean between four parts.
         if (edge < 2 * options.shortest_edge.of(patches, p) || 2 * weight < options.tolerance / 2) continue;

@@ -311,8 +311,8 @@ std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& f
     return (of[point[0]] + of[point[1]] + of[point[2]]) / 3;
   };
   const PatchSet& patches = mesh.patches();
-  const auto room_of = [&](std::uint32_t leaf) { return patches.room.empty() ? 0u : patches.room[mesh[leaf].patch]; };
-  std::vector<double> flux(std::max<std::size_t>(1, patches.rooms.size())), area(flux.size());
+  const auto room_of = [&](std::uint32_t leaf) { return patches.room_of(mesh[leaf].patch); };
+  std::vector<double> flux(patches.room_count()), area(flux.size());
   for (const std::uint32_t leaf : leaves) {
     flux[room_of(leaf)] += mesh[leaf].area * mean(mesh.points_of(leaf), E);
     area[room_of(leaf)] += mesh[leaf].area;

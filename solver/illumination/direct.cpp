@@ -44,9 +44,7 @@ Spectrum from_sky(const Illumination& light, std::size_t patch, const DirectOpti
             RowEntry::of_sky(pack_direction(direction), h.transmittance * (std::numbers::pi / options.sky_rays)));
     };
     if (first_way_out(openings, looked_at, ray.origin, ray.direction, hit.first) == kNoOpening) take(hit);
-    if (echo.is_none()) continue;
-    RandomStream random = echo_numbers(key, static_cast<std::uint64_t>(k));
-    follow_echo(problem.rays, problem.patches, echo, random, take);
+    follow_echo(problem.rays, problem.patches, echo, key, static_cast<std::uint64_t>(k), take);
   }
   return sum * (std::numbers::pi / options.sky_rays);
 }
@@ -69,9 +67,7 @@ EnergyBalance balance(const Problem& problem, const PlacedLuminaire& luminaire, 
       if (h.patch.valid()) arrived += I * luminous_mean(h.transmittance);
     };
     take(hit);
-    if (echo.is_none()) continue;
-    RandomStream random = echo_numbers(key, k);
-    follow_echo(problem.rays, problem.patches, echo, random, take);
+    follow_echo(problem.rays, problem.patches, echo, key, k, take);
   }
   const double flux = luminous_mean(power(luminaire));
   if (!(sent > 0)) return {.emitted = flux};

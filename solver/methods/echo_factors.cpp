@@ -32,8 +32,7 @@ bool look(const PatchSet& patches, const RayScene& rays, std::size_t i, std::uin
     rays.first_hit(patches, ray, &echo);
     if (echo.is_none()) continue;
     sees_glass = true;
-    RandomStream random = echo_numbers(key, k);
-    follow_echo(rays, patches, echo, random, [&](const Hit& hit) {
+    follow_echo(rays, patches, echo, key, k, [&](const Hit& hit) {
       if (hit.patch.valid()) arrivals.push_back({hit.patch.value, luminous_mean(hit.transmittance)});
     });
   }
@@ -45,28 +44,33 @@ bool look(const PatchSet& patches, const RayScene& rays, std::size_t i, std::uin
 void add_echoes(FormFactorMatrix& F, const PatchSet& patches, const RayScene& rays, std::uint64_t seed,
                 const Monitor& monitor) {
   if (!rays.has_glass()) return;
+  std::vector<char> sees_glass(F.n);
+  parallel_for(F.n, 8, [&](std::size_t from, std::size_t to) {
+    std::vector<Arrival> ignored;
+    for (std::size_t i = from; i < to && !monitor.should_stop(); ++i) {
+      ignored.clear();
+      sees_glass[i] = look(patches, rays, i, kPilots, mix_bits(stream_key(seed, kEchoFactors, i)), ignored);
+    }
+  });
+  F.rays += kPilots * F.n;
   constexpr std::size_t kBlock = 512;  // patches; bounds the memory
   std::vector<std::vector<Arrival>> found(kBlock);
-  std::vector<unsigned long long> sent(kBlock);
   for (std::size_t begin = 0; begin < F.n && !monitor.should_stop(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, F.n - begin);
     parallel_for(count, 8, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k) {
-        const std::uint64_t key = stream_key(seed, kEchoFactors, begin + k);
         found[k].clear();
-        sent[k] = kPilots;
-        if (!look(patches, rays, begin + k, kPilots, mix_bits(key), found[k])) continue;
-        found[k].clear();
-        sent[k] += kRays;
-        look(patches, rays, begin + k, kRays, key, found[k]);
+        if (sees_glass[begin + k])
+          look(patches, rays, begin + k, kRays, stream_key(seed, kEchoFactors, begin + k), found[k]);
       }
     });
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = begin + k;
-      F.rays += sent[k];
-      // Half by the rays of either: the exchange is the same both ways.
+      if (sees_glass[i]) F.rays += kRays;
       for (const auto& [j, share] : found[k]) {
-        const double F_ij = share / kRays / 2;
+        // The exchange is the same both ways: half by the rays of either, all by those of one where the other sends
+        // none.
+        const double F_ij = share / kRays / (sees_glass[j] ? 2 : 1);
         F.value[i * F.n + j] += static_cast<float>(F_ij);
         F.value[j * F.n + i] += static_cast<float>(F_ij * patches.area[i] / patches.area[j]);
       }

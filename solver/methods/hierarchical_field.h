@@ -40,7 +40,7 @@ struct HierarchicalField {
 /// map  the lightmap of problem.patches.
 /// The joint light decides where elements are halved and rays are sent, so it has the same bits with layers as without.
 /// Stopped early, vertices not reached show their element's irradiance; Solution::stop tells. With a deadline elements
-/// get four fifths of the time, and vertices what they need or what is left.
+/// get nine tenths of the time, and vertices what they need or what is left, half a second at least.
 /// Threads: same bits for any thread count.
 HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
                                      const HierarchicalFieldOptions& options, const Monitor& monitor = {});

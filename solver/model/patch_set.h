@@ -1,6 +1,7 @@
 #pragma once
 // The meshed scene as arrays: T conforming triangles, and N patches, each one side of a triangle.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -77,6 +78,9 @@ struct PatchSet {
   std::vector<std::string> rooms;     ///< names, by `room`
 
   std::size_t patch_count() const { return triangle.size(); }
+  /// Where rooms are not known, all are one.
+  std::uint32_t room_of(std::size_t patch) const { return room.empty() ? 0 : room[patch]; }
+  std::size_t room_count() const { return std::max<std::size_t>(1, rooms.size()); }
   std::size_t triangle_count() const { return corners.size(); }
   MaterialId material(PatchId p) const { return side_material[triangle[p]][side[p]]; }
   SurfaceId surface(PatchId p) const { return side_surface[triangle[p]][side[p]]; }

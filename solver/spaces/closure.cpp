@@ -46,10 +46,7 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
           if (h.patch.valid()) arrives += h.transmittance;
         };
         take(hit);
-        if (!echo.is_none()) {
-          RandomStream random = echo_numbers(stream_key(seed, kClosureRays, i), static_cast<std::uint64_t>(k));
-          follow_echo(rays, patches, echo, random, take);
-        }
+        follow_echo(rays, patches, echo, stream_key(seed, kClosureRays, i), static_cast<std::uint64_t>(k), take);
         if (k >= kNeighbours || !hit.patch.valid()) continue;
         if (std::ranges::none_of(
                 slits, [&](const LightArea& slit) { return is_passed(slit, ray.origin, ray.direction, hit.first); }))

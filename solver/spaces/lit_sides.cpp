@@ -111,10 +111,7 @@ Seen look_around(const Problem& problem, const Spaces& spaces, std::size_t i, in
       settled = settled || spaces.is_settled(h.patch);
     };
     take(hit);
-    if (!settled && !echo.is_none()) {
-      RandomStream random = echo_numbers(key, static_cast<std::uint64_t>(k));
-      follow_echo(problem.rays, patches, echo, random, take);
-    }
+    if (!settled) follow_echo(problem.rays, patches, echo, key, static_cast<std::uint64_t>(k), take);
     if (settled) return seen;
   }
   for (const PlacedSun& sun : problem.lights.suns) {

@@ -35,6 +35,15 @@ void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& firs
   }
 }
 
+/// The same for the ray that stream `key` numbers k, and nothing where there is no echo.
+template <class Found>
+void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& first, std::uint64_t key, std::uint64_t k,
+                 const Found& found) {
+  if (first.is_none()) return;
+  RandomStream random = echo_numbers(key, k);
+  follow_echo(rays, patches, first, random, found);
+}
+
 /// Instead of a ray's hit and its echoes: one of them, the way that the light of one ray takes. It keeps what the hit
 /// of its kind has on the mean. Once turned it ends by roulette with what glass took for its chance, so that it leaves
 /// glass that lets nothing pass: with a black hit without a patch.

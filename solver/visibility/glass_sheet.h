@@ -33,7 +33,7 @@ struct SheetShares {
 
 /// Of unpolarised light that comes at cosine cos_theta to the normal, in 0..1, from either side:
 ///   T = mean over both polarisations of (1 - R)^2 a / (1 - R^2 a^2),  a = internal^(1 / cos_inside),
-///   and reflected the mean of R + R a T,
+///   and reflected the mean of R + R a T of either polarisation,
 /// R by Fresnel, all reflections between the two faces summed without interference.
 SheetShares sheet_shares(const GlassSheet& sheet, double cos_theta);
 

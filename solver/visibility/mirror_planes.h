@@ -9,6 +9,8 @@
 
 namespace clerestory {
 
+inline constexpr std::uint32_t kNoPlane = 0xffffffff;  ///< among those that show images
+
 /// A plane with mirrors or panes of glass in it.
 struct MirrorPlane {
   Vec3 normal;        ///< unit

@@ -2,158 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <map>
 #include <optional>
-#include <stdexcept>
-
-#include <embree3/rtcore.h>
 
 #include "solver/geometry/triangle.h"
 #include "solver/model/coordinate_grid.h"
 #include "solver/model/parallel.h"
-#include "solver/model/streams.h"
-#include "solver/model/units.h"
-#include "solver/visibility/embree_device.h"
+#include "solver/visibility/echo_choice.h"
+#include "solver/visibility/embree_surfaces.h"
 #include "solver/visibility/fine_rays.h"
 #include "solver/visibility/glass_sheet.h"
 #include "solver/visibility/tight_places.h"
+#include "solver/visibility/turning_planes.h"
 
 namespace clerestory {
 namespace {
 
-constexpr int kMostReflections = 64;     // of one ray; what is left is lost
-constexpr std::size_t kMostPlanes = 64;  // of mirrors that show images of lights; and of glass
+constexpr int kMostReflections = 64;  // of one ray; what is left is lost
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kLift = 5e-7;          // of the diameter: a few units in the last place at the rim of the scene
 constexpr double kPlaceInPlane = 2e-6;  // of the diameter: how far from its plane a mirror is looked for
 constexpr double kFineLift = 1e-12;     // of the diameter: far above double's rounding, far below the coordinates' grid
-
-/// One Embree scene over some triangles of the PatchSet; primitive k is triangle of_primitive[k].
-struct Surfaces {
-  RTCScene handle = nullptr;
-  std::vector<std::uint32_t> of_primitive;
-  Surfaces() = default;
-  Surfaces(const Surfaces&) = delete;
-  Surfaces& operator=(const Surfaces&) = delete;
-  ~Surfaces() {
-    if (handle) rtcReleaseScene(handle);
-  }
-
-  void build(const EmbreeDevice& device, const PatchSet& patches, bool glass) {
-    for (std::size_t t = 0; t < patches.triangle_count(); ++t)
-      if (patches.front_material(TriangleId{t}).lets_rays_pass() == glass)
-        of_primitive.push_back(static_cast<std::uint32_t>(t));
-    handle = rtcNewScene(device.handle);
-    rtcSetSceneFlags(handle, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(handle, RTC_BUILD_QUALITY_MEDIUM);
-    if (!of_primitive.empty()) {
-      RTCGeometry geometry = rtcNewGeometry(device.handle, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), patches.vertices.size()));
-      auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(unsigned), of_primitive.size()));
-      if (!vertex || !index) throw std::bad_alloc();
-      for (const Vec3& v : patches.vertices)
-        for (int axis = 0; axis < 3; ++axis) *vertex++ = static_cast<float>(v[axis]);
-      for (const std::uint32_t t : of_primitive)
-        for (const VertexId v : patches.corners[t]) *index++ = v.value;
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometryByID(handle, geometry, 0);
-      rtcReleaseGeometry(geometry);
-    }
-    rtcCommitScene(handle);
-    device.check();
-  }
-
-  /// Calls found(triangle) for the triangles whose boxes come within `reach` of p.
-  template <class Found>
-  void visit_near(const Vec3& p, double reach, const Found& found) const {
-    struct Visit {
-      const Surfaces* surfaces;
-      const Found* found;
-    } visit{this, &found};
-    RTCPointQuery query{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0,
-                        static_cast<float>(reach)};
-    RTCPointQueryContext c;
-    rtcInitPointQueryContext(&c);
-    const auto note = [](RTCPointQueryFunctionArguments* args) {
-      const auto& to = *static_cast<const Visit*>(args->userPtr);
-      (*to.found)(TriangleId{to.surfaces->of_primitive[args->primID]});
-      return false;  // the reach stays
-    };
-    if (!of_primitive.empty()) rtcPointQuery(handle, &query, &c, note, &visit);
-  }
-};
-
-RTCIntersectContext context(RTCIntersectContextFlags flags) {
-  RTCIntersectContext c;
-  rtcInitIntersectContext(&c);
-  c.flags = flags;
-  return c;
-}
-
-RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float far_t) {
-  RTCRayHit r{};
-  r.ray.org_x = static_cast<float>(origin.x), r.ray.org_y = static_cast<float>(origin.y);
-  r.ray.org_z = static_cast<float>(origin.z), r.ray.dir_x = static_cast<float>(direction.x);
-  r.ray.dir_y = static_cast<float>(direction.y), r.ray.dir_z = static_cast<float>(direction.z);
-  r.ray.tnear = near_t, r.ray.tfar = far_t, r.ray.mask = ~0u;
-  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  return r;
-}
-
-/// Segments as rays of length 1. Without 16 lanes of hardware Embree reads lanes that are not valid too: they must hold
-/// numbers.
-RTCRay16 ray16(const SegmentPacket& s, std::uint16_t active, int* valid) {
-  RTCRay16 packet;
-  for (std::size_t k = 0; k < 16; ++k) {
-    const bool on = (active >> k) & 1;
-    valid[k] = on ? -1 : 0;
-    packet.org_x[k] = on ? s.from_x[k] : 0, packet.org_y[k] = on ? s.from_y[k] : 0;
-    packet.org_z[k] = on ? s.from_z[k] : 0;
-    packet.dir_x[k] = on ? s.to_x[k] - s.from_x[k] : 0, packet.dir_y[k] = on ? s.to_y[k] - s.from_y[k] : 0;
-    packet.dir_z[k] = on ? s.to_z[k] - s.from_z[k] : 1;
-    packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
-    packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
-  }
-  return packet;
-}
-
-/// Chooses one of the panes that a ray passes, each in proportion to what it turns back.
-class EchoChoice {
- public:
-  EchoChoice(const Ray& ray, Echo* echo) : ray_(ray), echo_(echo) {}
-  explicit operator bool() const { return echo_ != nullptr; }
-
-  /// The next pane turns this share back; from there the echo goes along `ray`.
-  void offer(std::uint32_t plane, const Spectrum& share, const Ray& ray) {
-    const double weight = luminous_mean(share);
-    if (!(weight > 0)) return;
-    all_ += weight;
-    if (weight < all_) {
-      if (!(random_number() * all_ < weight)) return;
-    }
-    chosen_ = weight, *echo_ = {plane, share, ray};
-  }
-  /// After the last pane.
-  void finish() {
-    if (echo_ && chosen_ > 0) echo_->share *= all_ / chosen_;
-  }
-
- private:
-  /// Its key is the ray: the same ray always has the same echo.
-  double random_number() {
-    if (!random_) random_.emplace(key_of(ray_, kPanesOfRay));
-    return random_->uniform();
-  }
-
-  const Ray& ray_;
-  Echo* echo_;
-  double all_ = 0, chosen_ = 0;
-  std::optional<RandomStream> random_;
-};
 
 /// Who is told of the panes on one part of a ray's way.
 struct PanesOnLeg {
@@ -170,17 +39,7 @@ struct RayScene::Impl {
   Surfaces opaque, glass;
   std::vector<GlassTable> glass_kinds;
   std::vector<std::uint32_t> kind_of_glass;  ///< by triangle; empty without glass
-  struct Mirror {
-    Vec3 normal;
-    double offset;        ///< of its own plane
-    std::uint32_t plane;  ///< kNoPlane: of none
-    Spectrum reflectance;
-  };
-  std::vector<Mirror> mirrors;
-  std::vector<std::uint32_t> mirror_of_triangle;  ///< number in `mirrors` or kNone; empty without mirrors
-  std::vector<MirrorPlane> planes;
-  std::vector<std::uint32_t> glass_plane;  ///< by triangle; empty without glass
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  TurningPlanes turning;
   double diameter = 0;
   std::vector<Vec3> vertices;  ///< in double, for what float cannot tell
   std::vector<std::array<VertexId, 3>> corners;
@@ -191,74 +50,8 @@ struct RayScene::Impl {
   Vec3 unit_normal(TriangleId t) const {
     return normalized(cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)));
   }
-  void add_to_plane(std::uint32_t plane, TriangleId t) {
-    for (std::size_t k = 0; k < 3; ++k) planes[plane].add(corner(t, k));
-  }
-
-  void find_mirrors(const PatchSet& patches) {
-    for (std::size_t t = 0; t < patches.triangle_count(); ++t) {
-      if (!patches.front_material(TriangleId{t}).turns_rays()) continue;
-      const Vec3 a = corner(TriangleId{t}, 0), n = unit_normal(TriangleId{t});
-      if (!(length(n) > 0.5)) continue;  // without area
-      if (mirror_of_triangle.empty()) mirror_of_triangle.assign(patches.triangle_count(), kNone);
-      const auto same = [&](const MirrorPlane& plane) {
-        return length(cross(plane.normal, n)) < 1e-6 && std::abs(plane.height(a)) < 1e-6 * diameter;
-      };
-      auto plane = static_cast<std::size_t>(std::find_if(planes.begin(), planes.end(), same) - planes.begin());
-      if (plane == planes.size() && plane < kMostPlanes) planes.push_back(mirror_plane(n, dot(n, a), false));
-      plane = std::min(plane, kMostPlanes);
-      mirror_of_triangle[t] = static_cast<std::uint32_t>(mirrors.size());
-      const bool shows = plane < planes.size();
-      const Vec3 normal = shows ? planes[plane].normal : n;
-      mirrors.push_back({normal, dot(normal, a), shows ? static_cast<std::uint32_t>(plane) : kNoPlane,
-                         patches.front_material(TriangleId{t}).reflectance});
-      if (shows) add_to_plane(mirrors.back().plane, TriangleId{t});
-    }
-  }
-
-  /// The planes of panes, those of largest area.
-  void find_glass_planes(const PatchSet& patches) {
-    struct Panes {
-      double area = 0;
-      std::vector<TriangleId> triangles;
-    };
-    // Planes that rounding tells apart are two: their panes are, too.
-    std::map<std::array<long, 4>, Panes> found;
-    for (const std::uint32_t t : glass.of_primitive) {
-      const TriangleId triangle{t};
-      Vec3 n = unit_normal(triangle);
-      const double area =
-          length(cross(corner(triangle, 1) - corner(triangle, 0), corner(triangle, 2) - corner(triangle, 0))) / 2;
-      if (!(length(n) > 0.5)) continue;
-      if (n.x < -1e-5 || (n.x < 1e-5 && (n.y < -1e-5 || (n.y < 1e-5 && n.z < 0)))) n = -n;
-      const double offset = dot(n, corner(triangle, 0));
-      Panes& panes = found[{std::lround(n.x * 1e5), std::lround(n.y * 1e5), std::lround(n.z * 1e5),
-                            std::lround(offset / (2e-6 * diameter))}];
-      panes.area += area;
-      panes.triangles.push_back(triangle);
-    }
-    std::vector<const Panes*> by_area;
-    for (const auto& [key, panes] : found) by_area.push_back(&panes);
-    std::ranges::stable_sort(by_area, std::greater<>(), [](const Panes* p) { return p->area; });
-    glass_plane.assign(glass.of_primitive.empty() ? 0 : patches.triangle_count(), kNoPlane);
-    for (const Panes* panes : std::span(by_area).first(std::min(kMostPlanes, by_area.size()))) {
-      const Vec3 n = unit_normal(panes->triangles[0]);
-      const auto number = static_cast<std::uint32_t>(planes.size());
-      planes.push_back(mirror_plane(n, dot(n, corner(panes->triangles[0], 0)), true));
-      for (const TriangleId t : panes->triangles) {
-        glass_plane[t] = number;
-        add_to_plane(number, t);
-      }
-    }
-  }
-
   Vec3 off_surface(const Vec3& p, const Vec3& n, double share) const {
     return p + n * (share * (tight.contains(p) ? kFineLift : kLift) * diameter);
-  }
-
-  const Mirror* mirror_at(TriangleId t) const {
-    if (!t.valid() || mirror_of_triangle[t] == kNone) return nullptr;
-    return &mirrors[mirror_of_triangle[t]];
   }
 
   bool lands_tight(const Hit& hit, const Ray& ray) const {
@@ -302,7 +95,7 @@ struct RayScene::Impl {
   void follow_mirrors(const PatchSet& patches, const Ray& first, double share, Hit& hit, EchoChoice* choice) const {
     Ray ray = first;
     for (int k = 0; k < kMostReflections; ++k) {
-      const Mirror* mirror = mirror_at(hit.triangle);
+      const TurningPlanes::Mirror* mirror = turning.mirror_at(hit.triangle);
       if (!mirror) return;
       const double along = dot(mirror->normal, ray.direction);
       const Vec3 n = along < 0 ? mirror->normal : -mirror->normal;
@@ -374,7 +167,7 @@ struct RayScene::Impl {
     walk_glass(origin, direction, far, finely, [&](double distance, TriangleId pane) {
       const double cosine = dot(unit_normal(pane), direction);
       if (panes.choice)
-        panes.choice->offer(panes.is_first ? glass_plane[pane] : kNoPlane,
+        panes.choice->offer(panes.is_first ? turning.glass_plane[pane] : kNoPlane,
                             panes.so_far * share * glass_of(pane).reflectance(cosine),
                             turned(origin, direction, distance, unit_normal(pane), corner(pane, 0), panes.lift_share));
       share *= glass_of(pane).transmittance(cosine);
@@ -395,10 +188,10 @@ struct RayScene::Impl {
   Spectrum turned_at(std::uint32_t plane, const Vec3& x, const Vec3& up, const Vec3& direction) const {
     const double reach = kPlaceInPlane * diameter;
     const Vec3 from = x + up * reach;
-    if (planes[plane].is_glass) {
+    if (turning.planes[plane].is_glass) {
       Spectrum share(0.0);
       walk_glass(from, -up, 2 * reach, tight.contains(x), [&](double, TriangleId pane) {
-        if (glass_plane[pane] == plane) share = glass_of(pane).reflectance(dot(up, direction));
+        if (turning.glass_plane[pane] == plane) share = glass_of(pane).reflectance(dot(up, direction));
       });
       return share;
     }
@@ -411,7 +204,7 @@ struct RayScene::Impl {
       rtcIntersect1(opaque.handle, &c, &r);
       if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) met = TriangleId{opaque.of_primitive[r.hit.primID]};
     }
-    const Mirror* mirror = mirror_at(met);
+    const TurningPlanes::Mirror* mirror = turning.mirror_at(met);
     return mirror && mirror->plane == plane ? mirror->reflectance : Spectrum(0.0);
   }
 
@@ -453,8 +246,7 @@ RayScene::RayScene(const PatchSet& patches) {
     impl->glass.build(impl->device, patches, true);
   });
   impl->tabulate_glass(patches);
-  impl->find_mirrors(patches);
-  impl->find_glass_planes(patches);
+  impl->turning = find_turning_planes(patches, impl->diameter);
   impl->tight = TightPlaces(patches, kLift * impl->diameter);
   if (impl->tight.any()) impl->fine.emplace(patches, impl->vertices, impl->corners, impl->diameter);
   impl_ = std::move(impl);
@@ -465,11 +257,11 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
 
-bool RayScene::has_mirrors() const { return !impl_->mirrors.empty(); }
-const std::vector<MirrorPlane>& RayScene::mirrors() const { return impl_->planes; }
+bool RayScene::has_mirrors() const { return !impl_->turning.mirrors.empty(); }
+const std::vector<MirrorPlane>& RayScene::mirrors() const { return impl_->turning.planes; }
 std::uint32_t RayScene::plane_of(TriangleId t) const {
-  if (const Impl::Mirror* mirror = has_mirrors() ? impl_->mirror_at(t) : nullptr) return mirror->plane;
-  return has_glass() ? impl_->glass_plane[t] : kNoPlane;
+  if (const TurningPlanes::Mirror* mirror = has_mirrors() ? impl_->turning.mirror_at(t) : nullptr) return mirror->plane;
+  return has_glass() ? impl_->turning.glass_plane[t] : kNoPlane;
 }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }
@@ -617,7 +409,7 @@ Spectrum RayScene::transmittance_by_mirrors(const Vec3& from, const Vec3& image,
   std::array<bool, MirrorWay::kMost> above;
   Vec3 start = from, end = image;
   for (std::size_t k = way.count; k-- > 0;) {
-    const MirrorPlane& plane = impl_->planes[way.plane[k]];
+    const MirrorPlane& plane = impl_->turning.planes[way.plane[k]];
     const double height = plane.height(start), beyond = plane.height(end);
     if (!(height * beyond < 0)) return Spectrum(0.0);
     crossing[k] = start + (end - start) * (height / (height - beyond));
@@ -628,7 +420,7 @@ Spectrum RayScene::transmittance_by_mirrors(const Vec3& from, const Vec3& image,
   Spectrum share(1.0);
   start = from;
   for (std::size_t k = way.count; k-- > 0;) {
-    const MirrorPlane& plane = impl_->planes[way.plane[k]];
+    const MirrorPlane& plane = impl_->turning.planes[way.plane[k]];
     const Vec3 up = above[k] ? plane.normal : -plane.normal, x = off_surface(crossing[k], up);
     share *= impl_->turned_at(way.plane[k], crossing[k], up, normalized(crossing[k] - start));
     if (share.is_black()) return share;
@@ -651,10 +443,10 @@ std::vector<Turn> RayScene::turns(const Ray& ray) const {
       ray.origin, ray.direction, end.distance, is_tight(ray.origin), [&](double distance, TriangleId pane) {
         const GlassTable& kind = impl_->glass_of(pane);
         const double cosine = dot(impl_->unit_normal(pane), ray.direction);
-        found.push_back({impl_->glass_plane[pane], share * kind.reflectance(cosine), turned(distance, pane)});
+        found.push_back({impl_->turning.glass_plane[pane], share * kind.reflectance(cosine), turned(distance, pane)});
         share *= kind.transmittance(cosine);
       });
-  if (const Impl::Mirror* mirror = has_mirrors() ? impl_->mirror_at(end.triangle) : nullptr)
+  if (const TurningPlanes::Mirror* mirror = has_mirrors() ? impl_->turning.mirror_at(end.triangle) : nullptr)
     found.push_back({mirror->plane, share * mirror->reflectance, turned(end.distance, end.triangle)});
   return found;
 }

@@ -14,8 +14,6 @@
 
 namespace clerestory {
 
-inline constexpr std::uint32_t kNoPlane = 0xffffffff;
-
 struct Ray {
   Vec3 origin;     ///< already off its surface, see RayScene::off_surface() [m]
   Vec3 direction;  ///< unit
@@ -62,6 +60,7 @@ struct Turn {
   Spectrum share;       ///< of the ray that goes on along `ray`
   Ray ray;
 };
+
 /// Sixteen segments for one packet, as separate coordinates; both ends already off their surfaces.
 struct SegmentPacket {
   alignas(64) std::array<float, 16> from_x, from_y, from_z, to_x, to_y, to_z;
@@ -135,8 +134,8 @@ class RayScene {
   /// Where rays start for a point in the air, p itself unless a surface is nearer than rounding: then on p's side of
   /// it, or, when p lies in it, on the side that n shows.
   Vec3 beside_surfaces(const Vec3& p, const Vec3& n) const;
-  /// The same surfaces for rays whose ends are lifted half as far: what a lift does to a result is seen by rays that have
-  /// another. (A quarter was too near: rounding put 0.2 % of the ends behind their surface.)
+  /// The same surfaces for rays whose ends are lifted half as far: what a lift does to a result is seen by rays that
+  /// have another. (A quarter was too near: rounding put 0.2 % of the ends behind their surface.)
   RayScene with_nearer_ends() const;
   /// The distance by which ray ends are lifted where there is room: 5e-7 of the diagonal, a few units in the last place
   /// at the rim of the scene [m].

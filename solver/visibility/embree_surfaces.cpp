@@ -2,9 +2,15 @@
 
 #include <new>
 
+#include <embree3/rtcore.h>
+
 namespace clerestory {
 
-void Surfaces::build(const EmbreeDevice& device, const PatchSet& patches, bool glass) {
+EmbreeSurfaces::~EmbreeSurfaces() {
+  if (handle) rtcReleaseScene(handle);
+}
+
+void EmbreeSurfaces::build(const EmbreeDevice& device, const PatchSet& patches, bool glass) {
   for (std::size_t t = 0; t < patches.triangle_count(); ++t)
     if (patches.front_material(TriangleId{t}).lets_rays_pass() == glass)
       of_primitive.push_back(static_cast<std::uint32_t>(t));
@@ -30,36 +36,22 @@ void Surfaces::build(const EmbreeDevice& device, const PatchSet& patches, bool g
   device.check();
 }
 
-RTCIntersectContext context(RTCIntersectContextFlags flags) {
-  RTCIntersectContext c;
-  rtcInitIntersectContext(&c);
-  c.flags = flags;
-  return c;
-}
-
-RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float far_t) {
-  RTCRayHit r{};
-  r.ray.org_x = static_cast<float>(origin.x), r.ray.org_y = static_cast<float>(origin.y);
-  r.ray.org_z = static_cast<float>(origin.z), r.ray.dir_x = static_cast<float>(direction.x);
-  r.ray.dir_y = static_cast<float>(direction.y), r.ray.dir_z = static_cast<float>(direction.z);
-  r.ray.tnear = near_t, r.ray.tfar = far_t, r.ray.mask = ~0u;
-  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  return r;
-}
-
-RTCRay16 ray16(const SegmentPacket& s, std::uint16_t active, int* valid) {
-  RTCRay16 packet;
-  for (std::size_t k = 0; k < 16; ++k) {
-    const bool on = (active >> k) & 1;
-    valid[k] = on ? -1 : 0;
-    packet.org_x[k] = on ? s.from_x[k] : 0, packet.org_y[k] = on ? s.from_y[k] : 0;
-    packet.org_z[k] = on ? s.from_z[k] : 0;
-    packet.dir_x[k] = on ? s.to_x[k] - s.from_x[k] : 0, packet.dir_y[k] = on ? s.to_y[k] - s.from_y[k] : 0;
-    packet.dir_z[k] = on ? s.to_z[k] - s.from_z[k] : 1;
-    packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
-    packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
-  }
-  return packet;
+void EmbreeSurfaces::visit_near(const Vec3& p, double reach, const std::function<void(TriangleId)>& found) const {
+  if (of_primitive.empty()) return;
+  struct Visit {
+    const EmbreeSurfaces& surfaces;
+    const std::function<void(TriangleId)>& found;
+  } visit{*this, found};
+  RTCPointQuery query{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0,
+                      static_cast<float>(reach)};
+  RTCPointQueryContext c;
+  rtcInitPointQueryContext(&c);
+  const auto note = [](RTCPointQueryFunctionArguments* args) {
+    const auto& to = *static_cast<const Visit*>(args->userPtr);
+    to.found(TriangleId{to.surfaces.of_primitive[args->primID]});
+    return false;  // the reach stays
+  };
+  rtcPointQuery(handle, &query, &c, note, &visit);
 }
 
 }  // namespace clerestory

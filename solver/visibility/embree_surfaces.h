@@ -1,57 +1,31 @@
 #pragma once
-// Triangles and rays as Embree has them. Included by sources of this folder only: Embree stays inside.
+// The triangles of a PatchSet as Embree has them.
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include <embree3/rtcore.h>
-
+#include "solver/model/patch_set.h"
 #include "solver/visibility/embree_device.h"
-#include "solver/visibility/ray_scene.h"
+
+struct RTCSceneTy;
 
 namespace clerestory {
 
 /// One Embree scene over some triangles of the PatchSet; primitive k is triangle of_primitive[k].
-struct Surfaces {
-  RTCScene handle = nullptr;
+struct EmbreeSurfaces {
+  RTCSceneTy* handle = nullptr;
   std::vector<std::uint32_t> of_primitive;
-  Surfaces() = default;
-  Surfaces(const Surfaces&) = delete;
-  Surfaces& operator=(const Surfaces&) = delete;
-  ~Surfaces() {
-    if (handle) rtcReleaseScene(handle);
-  }
+  EmbreeSurfaces() = default;
+  EmbreeSurfaces(const EmbreeSurfaces&) = delete;
+  EmbreeSurfaces& operator=(const EmbreeSurfaces&) = delete;
+  ~EmbreeSurfaces();
 
-  /// glass: of the panes, or of all other triangles.
+  /// glass: of the panes, or of all other triangles. Throws as EmbreeDevice does.
   void build(const EmbreeDevice& device, const PatchSet& patches, bool glass);
 
   /// Calls found(triangle) for the triangles whose boxes come within `reach` of p.
-  template <class Found>
-  void visit_near(const Vec3& p, double reach, const Found& found) const {
-    struct Visit {
-      const Surfaces* surfaces;
-      const Found* found;
-    } visit{this, &found};
-    RTCPointQuery query{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0,
-                        static_cast<float>(reach)};
-    RTCPointQueryContext c;
-    rtcInitPointQueryContext(&c);
-    const auto note = [](RTCPointQueryFunctionArguments* args) {
-      const auto& to = *static_cast<const Visit*>(args->userPtr);
-      (*to.found)(TriangleId{to.surfaces->of_primitive[args->primID]});
-      return false;  // the reach stays
-    };
-    if (!of_primitive.empty()) rtcPointQuery(handle, &query, &c, note, &visit);
-  }
+  void visit_near(const Vec3& p, double reach, const std::function<void(TriangleId)>& found) const;
 };
-
-RTCIntersectContext context(RTCIntersectContextFlags flags);
-
-/// One ray that met nothing yet.
-RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float far_t);
-
-/// Segments as rays of length 1. Without 16 lanes of hardware Embree reads lanes that are not valid too: they must hold
-/// numbers.
-RTCRay16 ray16(const SegmentPacket& s, std::uint16_t active, int* valid);
 
 }  // namespace clerestory

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include <embree3/rtcore.h>
+
 #include "solver/geometry/triangle.h"
 #include "solver/model/coordinate_grid.h"
 #include "solver/model/parallel.h"
@@ -24,6 +26,41 @@ constexpr double kLift = 5e-7;          // of the diameter: a few units in the l
 constexpr double kPlaceInPlane = 2e-6;  // of the diameter: how far from its plane a mirror is looked for
 constexpr double kFineLift = 1e-12;     // of the diameter: far above double's rounding, far below the coordinates' grid
 
+RTCIntersectContext context(RTCIntersectContextFlags flags) {
+  RTCIntersectContext c;
+  rtcInitIntersectContext(&c);
+  c.flags = flags;
+  return c;
+}
+
+/// One ray that met nothing yet.
+RTCRayHit ray_hit(const Vec3& origin, const Vec3& direction, float near_t, float far_t) {
+  RTCRayHit r{};
+  r.ray.org_x = static_cast<float>(origin.x), r.ray.org_y = static_cast<float>(origin.y);
+  r.ray.org_z = static_cast<float>(origin.z), r.ray.dir_x = static_cast<float>(direction.x);
+  r.ray.dir_y = static_cast<float>(direction.y), r.ray.dir_z = static_cast<float>(direction.z);
+  r.ray.tnear = near_t, r.ray.tfar = far_t, r.ray.mask = ~0u;
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return r;
+}
+
+/// Segments as rays of length 1. Without 16 lanes of hardware Embree reads lanes that are not valid too: they must hold
+/// numbers.
+RTCRay16 ray16(const SegmentPacket& s, std::uint16_t active, int* valid) {
+  RTCRay16 packet;
+  for (std::size_t k = 0; k < 16; ++k) {
+    const bool on = (active >> k) & 1;
+    valid[k] = on ? -1 : 0;
+    packet.org_x[k] = on ? s.from_x[k] : 0, packet.org_y[k] = on ? s.from_y[k] : 0;
+    packet.org_z[k] = on ? s.from_z[k] : 0;
+    packet.dir_x[k] = on ? s.to_x[k] - s.from_x[k] : 0, packet.dir_y[k] = on ? s.to_y[k] - s.from_y[k] : 0;
+    packet.dir_z[k] = on ? s.to_z[k] - s.from_z[k] : 1;
+    packet.tnear[k] = 0, packet.tfar[k] = 1, packet.time[k] = 0;
+    packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
+  }
+  return packet;
+}
+
 /// Who is told of the panes on one part of a ray's way.
 struct PanesOnLeg {
   EchoChoice* choice = nullptr;  ///< null: nobody
@@ -36,7 +73,7 @@ struct PanesOnLeg {
 
 struct RayScene::Impl {
   EmbreeDevice device;
-  Surfaces opaque, glass;
+  EmbreeSurfaces opaque, glass;
   std::vector<GlassTable> glass_kinds;
   std::vector<std::uint32_t> kind_of_glass;  ///< by triangle; empty without glass
   TurningPlanes turning;
@@ -277,7 +314,7 @@ Vec3 RayScene::beside_surfaces(const Vec3& p, const Vec3& n) const {
   const double reach = std::max(off, in_plane);
   std::vector<TriangleId> near;
   const auto note = [&](TriangleId t) { near.push_back(t); };
-  for (const Surfaces* surfaces : {&impl_->opaque, &impl_->glass}) surfaces->visit_near(p, 2 * lift(), note);
+  for (const EmbreeSurfaces* surfaces : {&impl_->opaque, &impl_->glass}) surfaces->visit_near(p, 2 * lift(), note);
   std::sort(near.begin(), near.end(), [](TriangleId a, TriangleId b) { return a.value < b.value; });
   Vec3 at = p;
   for (const TriangleId t : near) {

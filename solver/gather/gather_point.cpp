@@ -184,10 +184,8 @@ Spectrum bright_patches_in_mirrors(const Illumination& light, const Vec3& p, con
   return sum;
 }
 
-}  // namespace
-
-GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                           const GatherPlan& plan, unsigned long long& rays, LightRow* row) {
+GatheredLight gather_as_planned(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                                const GatherPlan& plan, unsigned long long& rays, LightRow* row) {
   if (row) row->clear();
   const int to_bright_patches = bright_rays(light, pattern, plan);
   const Frame frame(n);
@@ -225,6 +223,19 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
   }
   CLERESTORY_ASSERT(all_finite(at.E), ==, true);
   return at;
+}
+
+}  // namespace
+
+GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                           const GatherPlan& plan, unsigned long long& rays, LightRow* row) {
+  const GatheredLight at = gather_as_planned(light, p, n, pattern, plan, rays, row);
+  const RayBudget& bundle = pattern.quality().bundle;
+  const bool has_more_rays = plan.bundle.empty() && bundle.deepest() > bundle.least();
+  if (!has_more_rays || !(at.std_error > pattern.quality().noise * luminous_mean(at.E))) return at;
+  GatherPlan sharper = plan;
+  sharper.bundle = plan_bundle(light, p, n, pattern, plan, rays);
+  return gather_as_planned(light, p, n, pattern, sharper, rays, row);
 }
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,

@@ -36,6 +36,9 @@ struct GatherPlan {
 bool wants_plan(const Illumination& light, const GatherPattern& pattern);
 GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                        unsigned long long& rays);
+/// More rays where neighbours of a pilot's differ; of that plan, which has none of its own.
+RayShares plan_bundle(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                      const GatherPlan& plan, unsigned long long& rays);
 
 /// Irradiance at p (lifted) on a plane of unit normal n.
 ///
@@ -44,7 +47,8 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 /// bright area that it meets. Only what differs from the mean that the plan knows is left to chance: form factors times
 /// that mean are closed forms, so an even sky or bright area that nothing hides is exact. Other bright patches, glowing
 /// or lit, by shadow rays and by the bundle, weighted by the balance heuristic, and so are those that the plan's
-/// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land.
+/// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land. What is noisier than the
+/// quality allows is gathered anew, with more of the bundle's rays where a pilot sees contrast: under a bed, in a gap.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.

@@ -204,6 +204,13 @@ bool wants_plan(const Illumination& light, const GatherPattern& pattern) {
   return !light.sky.dark() && bundle.deepest() > bundle.least();
 }
 
+RayShares plan_bundle(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
+                      const GatherPlan& plan, unsigned long long& rays) {
+  const Frame frame(n);
+  const View view(light, p, frame, bright_rays(light, pattern, plan), plan);
+  return shares_by(pilot_values(view, frame, pattern.bundle(), rays), pattern.bundle().budget());
+}
+
 GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                        unsigned long long& rays) {
   const Frame frame(n);
@@ -255,8 +262,7 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   const bool adapts = bundle.budget().deepest() > bundle.budget().least() && !light.sky.dark();
   const SkyInView sky = adapts ? sky_in_view(light, p, frame, pattern, plan.openings, rays) : SkyInView::none;
   if (sky == SkyInView::edge) {
-    const View view(light, p, frame, bright_rays(light, pattern, plan), plan);
-    plan.bundle = shares_by(pilot_values(view, frame, bundle, rays), bundle.budget());
+    plan.bundle = plan_bundle(light, p, n, pattern, plan, rays);
   } else if (sky == SkyInView::all) {  // changes slowly all over: half of the surplus, evenly
     const int rays_each = (bundle.budget().rays + bundle.budget().most_rays) / 2 / bundle.budget().strata();
     plan.bundle.assign(static_cast<std::size_t>(bundle.budget().strata()),

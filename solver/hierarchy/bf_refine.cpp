@@ -33,20 +33,31 @@ struct Scene {
   std::vector<Sphere> sphere;
   std::vector<float> B;      ///< by node, luminous [W/m2]
   std::vector<double> area;  ///< N + 1, of the leaves before each one [m2]
+  std::vector<double> flux;  ///< the same of what they send [W]
 
   Scene(const Problem& p, const ElementTree& t, const Field& radiosity)
       : problem(p), tree(t), sphere(bounding_spheres(t, p.patches)), B(node_light(t, radiosity).mean) {
-    area.push_back(0);
-    for (const std::uint32_t patch : t.patch) area.push_back(area.back() + p.patches.area[patch]);
+    area.push_back(0), flux.push_back(0);
+    for (const std::uint32_t patch : t.patch) {
+      area.push_back(area.back() + p.patches.area[patch]);
+      flux.push_back(flux.back() + p.patches.area[patch] * luminous_mean(radiosity[patch]));
+    }
   }
 
   PatchId leaf(std::uint32_t v) const { return PatchId{std::size_t{tree.patch[tree.first_leaf(v)]}}; }
   /// The leaf under v at the share x of its area.
-  PatchId leaf_at(std::uint32_t v, double x) const {
+  PatchId leaf_by_area(std::uint32_t v, double x) const { return leaf_at(v, x, area); }
+  /// The leaf under v at the share x of what they send.
+  PatchId leaf_by_flux(std::uint32_t v, double x) const {
+    return leaf_at(v, x, flux[tree.leaf_end(v)] > flux[tree.first_leaf(v)] ? flux : area);
+  }
+
+ private:
+  PatchId leaf_at(std::uint32_t v, double x, const std::vector<double>& before) const {
     const std::size_t first = tree.first_leaf(v), last = tree.leaf_end(v);
-    const double at = area[first] + x * (area[last] - area[first]);
-    const auto begin = area.begin() + static_cast<std::ptrdiff_t>(first) + 1;
-    const auto found = std::upper_bound(begin, area.begin() + static_cast<std::ptrdiff_t>(last), at);
+    const double at = before[first] + x * (before[last] - before[first]);
+    const auto begin = before.begin() + static_cast<std::ptrdiff_t>(first) + 1;
+    const auto found = std::upper_bound(begin, before.begin() + static_cast<std::ptrdiff_t>(last), at);
     return PatchId{std::size_t{tree.patch[static_cast<std::size_t>(found - begin) + first]}};
   }
 };
@@ -136,7 +147,7 @@ class PatchLinks {
         scene, [&](double kernel, const Spectrum& passes) { seen += kernel / kPairsOfLink * luminous_mean(passes); });
     for (std::uint32_t k = 0; k < kPairsOfLink; ++k) {
       const auto u = sobol4(k, key), v = sobol4(k, mix_bits(key));
-      const PatchId a = scene_.leaf_at(p, v[0]), b = scene_.leaf_at(q, v[1]);
+      const PatchId a = scene_.leaf_by_area(p, v[0]), b = scene_.leaf_by_flux(q, v[1]);
       const Vec3 x = point_on_triangle(patches.corner_positions(a), u[0], u[1]);
       const Vec3 y = point_on_triangle(patches.corner_positions(b), u[2], u[3]);
       const double kernel = point_kernel(x, patches.normal[a], y, patches.normal[b]);

@@ -23,8 +23,9 @@ struct BfLinks {
 
 /// From every patch to the root of the tree: while the flux at stake, rho_p F B_q A_p with an upper bound of F, is
 /// above the threshold, the larger of both is replaced by its children. A link's F V is the mean kernel of 16 point
-/// pairs, those of a cluster spread over its surfaces by area, times what is visible of them; between near leaves the
-/// closed form times that.
+/// pairs, times what is visible of them; between near leaves the closed form times that. Of a cluster that sends,
+/// points are chosen by what its leaves send, once that is known: what cannot be seen of it may be the brightest; else
+/// by area.
 ///
 /// B  N x channels, radiosity known so far.
 /// Source: Hanrahan, Salzman & Aupperle, "A rapid hierarchical radiosity algorithm", 1991; Smits, Arvo & Greenberg, "A

@@ -8,6 +8,7 @@
 
 #include "solver/gather/gather_point.h"
 #include "solver/gather/gather_time.h"
+#include "solver/hierarchy/feet.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
@@ -27,7 +28,7 @@ constexpr double kPointsOfHalf = 2;  ///< that halving an element makes at most,
 /// Where light that is not straight from sun and luminaires is off by more than so many times the tolerance, edges may
 /// be shorter than the shortest in proportion, down to that share of it: at the feet of furniture and in window
 /// reveals.
-constexpr double kMuchOff = 3, kFinest = 0.25;
+constexpr double kMuchOff = 2, kFinest = 0.25;
 /// Shortest edges: so far off the pilot rays of a point tell enough, where it has nearly the same horizon (cosine).
 constexpr double kNearby = 4, kSameHorizon = 0.95;
 /// Of the sun and luminaires at the point that sent them: where there is less, what is little beside them is not.
@@ -348,6 +349,7 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
     return field;
   }
   field.E = field.delta_light = Field(0, problem.patches.channels);
+  cut_at_feet(mesh, options.shortest_edge, kFinest);
   Gatherer gatherer(problem, B, slit_light, mesh, options, layers, monitor);
   field.in_time = !gatherer.is_coarser_than(options.quality);
   const double before = monitor.seconds_left();

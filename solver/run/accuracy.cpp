@@ -22,7 +22,7 @@ constexpr Effort kDraft{
     .shortest_edge = 1.0 / 4,
     .most_points = 100'000,
     .vertices = {.bundle = {8, 64, 64}, .area = {0, 1, 0.02, 128}, .bright_rays = 32, .sun_rays = 8},
-    .sensors = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
+    .sensors = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16, .noise = 0.1},
     .gathers_vertices = false,
     .direct = {.shadow_rays = 16, .edge_rays = 64, .sky_rays = 128},
     .closure_rays = 32,
@@ -43,8 +43,9 @@ constexpr Effort kStandard{
     .vertex_tolerance = 0.05,
     .shortest_edge = 1.0 / 8,
     .most_points = 400'000,
-    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 32, .sun_rays = 16},
-    .sensors = {.bundle = {16, 256, 2048}, .area = {2, 6, 0.003, 8192}, .bright_rays = 256, .sun_rays = 32},
+    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 32, .sun_rays = 16, .noise = 0.1},
+    .sensors =
+        {.bundle = {16, 256, 2048}, .area = {2, 6, 0.003, 8192}, .bright_rays = 256, .sun_rays = 32, .noise = 0.05},
     .gathers_vertices = true,
     .direct = {.shadow_rays = 16, .edge_rays = 256, .sky_rays = 256},
     .closure_rays = 64,
@@ -77,8 +78,10 @@ constexpr Effort kFine{
     .vertex_tolerance = 0.035,
     .shortest_edge = 1.0 / 16,
     .most_points = 1'600'000,
-    .vertices = {.bundle = {16, 512, 2048}, .area = {1, 4, 0.005, 2048}, .bright_rays = 128, .sun_rays = 32},
-    .sensors = {.bundle = {16, 1024, 8192}, .area = {2, 6, 0.0015, 16384}, .bright_rays = 512, .sun_rays = 64},
+    .vertices =
+        {.bundle = {16, 512, 2048}, .area = {1, 4, 0.005, 2048}, .bright_rays = 128, .sun_rays = 32, .noise = 0.05},
+    .sensors =
+        {.bundle = {16, 1024, 8192}, .area = {2, 6, 0.0015, 16384}, .bright_rays = 512, .sun_rays = 64, .noise = 0.03},
     .gathers_vertices = true,
     .direct = {.shadow_rays = 64, .edge_rays = 1024, .sky_rays = 1024},
     .closure_rays = 128,
@@ -94,6 +97,7 @@ void tighten(GatherQuality& quality, int times) {
   quality.bundle.rays <<= times;
   quality.bundle.most_rays <<= times;
   quality.area.most_rays <<= times;
+  quality.noise *= std::pow(0.5, times / 2.0);  // as noise falls with rays
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct GatherQuality {
   AreaBudget area;   ///< to each opening and each bright area that matters
   int bright_rays;   ///< shadow rays to bright patches
   int sun_rays;      ///< to each sun
+  double noise = 1;  ///< standard error, as a share of all light at a point, above which the bundle gets its most rays
 };
 
 /// Cosine-distributed directions in the frame of the normal (z), by stratum of the unit square. Those of a stratum are

@@ -213,6 +213,39 @@ def room_sunpatch(folder):
                 {"materials": materials, "sun": {"direction": list(sun), "normal_illuminance": 80000}},
                 info={"sun_patch": patch})
 
+def contacts(folder):
+    """Where furniture stands: a table on four legs of 5 cm, a bed 10 cm above the floor, a bench, a cupboard 10 cm off the
+    wall. Points within 2 cm of the legs, under bed and bench, and in the gap, a quarter each."""
+    m = Model(4.0)
+    m.room((0, 0, 0), (4.0, 3.2, 2.6))
+    legs = [(x, y) for x in (1.6, 2.75) for y in (0.5, 1.15)]
+    m.box("block", (1.6, 0.5, 0.70), (1.2, 0, 0), (0, 0.7, 0), (0, 0, 0.03), bottom_sampled=True)
+    for x, y in legs:
+        m.box("block", (x, y, 0), (0.05, 0, 0), (0, 0.05, 0), (0, 0, 0.70))
+    bed, bench, cupboard = (0.05, 1.2, 0.9, 1.95), (1.9, 2.7, 1.3, 0.35), (3.5, 0.6, 0.4, 1.4)
+    m.box("block", (bed[0], bed[1], 0.10), (bed[2], 0, 0), (0, bed[3], 0), (0, 0, 0.35), bottom_sampled=True)
+    m.box("block", (bench[0], bench[1], 0.42), (bench[2], 0, 0), (0, bench[3], 0), (0, 0, 0.04), bottom_sampled=True)
+    for x in (bench[0] + 0.1, bench[0] + bench[2] - 0.14):
+        m.box("block", (x, bench[1], 0), (0.04, 0, 0), (0, bench[3], 0), (0, 0, 0.42))
+    m.box("block", (cupboard[0], cupboard[1], 0), (cupboard[2], 0, 0), (0, cupboard[3], 0), (0, 0, 1.9))
+    m.box("body", (1.7, 1.3, 2.588), (0.6, 0, 0), (0, 0.6, 0), (0, 0, 0.006), bottom="lamp", bottom_sampled=True)
+
+    def places(faces, count, seed, accept=lambda p: True):
+        part = Model(4.0)
+        part.solids = m.solids
+        for origin, u, v in faces:
+            part.quad("", origin, u, v)
+        return part.points(count, seed, accept)
+
+    def under(x, y, w, d, z):
+        return [((x, y, 0), (w, 0, 0), (0, d, 0)), ((x, y, z), (0, d, 0), (w, 0, 0))]
+
+    at_legs = places([((x - 0.02, y - 0.02, 0), (0.09, 0, 0), (0, 0.09, 0)) for x, y in legs], 500, 1)
+    x, y, d, h = cupboard[0] + cupboard[2], cupboard[1], cupboard[3], 1.9
+    gap = [((x, y, 0), (0, d, 0), (0, 0, h)), ((4.0, y, 0), (0, 0, h), (0, d, 0))]
+    write_scene(folder, "contacts", m, {"materials": GREY},
+                at_legs + places(under(*bed, 0.10), 500, 2) + places(under(*bench, 0.42), 500, 3) + places(gap, 500, 4))
+
 
 CELL = (3.0, 2.5, 2.6)
 
@@ -329,7 +362,7 @@ def sealed(folder, name, sheet):
 
 SCENES = {
     "room_lamp": room_lamp, "room_cornell_mm": room_cornell_mm, "room_uplight": room_uplight,
-    "room_thread": room_thread, "room_sunpatch": room_sunpatch,
+    "room_thread": room_thread, "room_sunpatch": room_sunpatch, "contacts": contacts,
     "office_window": office("office_window", (0.5, 0.9, 3, 1.5)), "office_slit": office("office_slit", (1.5, 1.4, 1, 0.001)),
     "sealed_slab": lambda f: sealed(f, "sealed_slab", False),
     "sealed_sheet": lambda f: sealed(f, "sealed_sheet", True),

@@ -1,8 +1,12 @@
 #include "solver/gather/gather.h"
 
+#include <array>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "solver/evaluate/measured_error.h"
+#include "solver/form_factors/point_to_polygon.h"
 #include "solver/gather/gather_point.h"
 #include "solver/gather/gather_time.h"
 #include "solver/model/random_stream.h"
@@ -73,6 +77,53 @@ TEST(GatherPoint, OfASmallLampAndASmallWindowHasNoBias) {
   EXPECT_NEAR(estimate, paths.E[0], 4 * std::hypot(std_error, paths.std_error[0]));
   EXPECT_LT(std_error, 0.01 * estimate);
   EXPECT_LT(paths.std_error[0], 0.005 * estimate);
+}
+
+/// A floor, a black plate 0.1 m above it up to x = 0, and a wall at x = 1 that glows: from under the plate a strip of
+/// it.
+struct UnderAPlate {
+  static PatchSet build() {
+    PatchBuilder b(0.0);
+    b.material(0.0, 1000).rectangle({1, -3, 0}, {0, 0, 1}, {0, 6, 0});
+    b.material(0.0, 0).rectangle({-2, -50, 0.1}, {0, 100, 0}, {2, 0, 0});
+    return b.build();
+  }
+  PatchSet patches = build();
+  RayScene rays{patches};
+  Lights none{};
+  Problem problem{patches, rays, none};
+  Vec3 p{-0.3, 0, 0}, n{0, 0, 1};
+  double E = 0;  ///< what is seen of the wall ends where the line over the plate's edge meets it
+
+  UnderAPlate() {
+    const double top = 0.1 / 0.3 * 1.3;
+    const std::array<Vec3, 4> seen{Vec3{1, -3, 0}, {1, -3, top}, {1, 3, top}, {1, 3, 0}};
+    E = 1000 * std::abs(point_to_polygon(p, n, seen));
+  }
+  static constexpr int kRepeats = 100;
+  struct Estimate {
+    double mean = 0, spread = 0;
+  };
+  Estimate gather(double noise) const {
+    GatherQuality quality = test::gather_quality({16, 256, 1024}, 0);
+    quality.noise = noise;
+    const Illumination light(problem, patches.M);
+    double sum = 0, squares = 0;
+    unsigned long long traced = 0;
+    for (std::uint64_t k = 0; k < kRepeats; ++k) {
+      const double found =
+          gather_point(light, p, n, GatherPattern(quality, stream_key(3, k)), GatherPlan{}, traced).E[0];
+      sum += found, squares += found * found;
+    }
+    return {sum / kRepeats, std::sqrt(squares / kRepeats - sum * sum / kRepeats / kRepeats)};
+  }
+};
+
+TEST(GatherPoint, IsGatheredAnewWithMoreRaysWhereItIsNoisy) {
+  const UnderAPlate place;
+  const auto plain = place.gather(1), sharp = place.gather(0.05);
+  EXPECT_LT(sharp.spread, 0.5 * plain.spread);
+  EXPECT_NEAR(sharp.mean, place.E, 4 * sharp.spread / std::sqrt(UnderAPlate::kRepeats));
 }
 
 TEST(MeasuredError, IsNothingForAnExactFieldAndFindsAFieldThatIsFivePerCentTooBright) {

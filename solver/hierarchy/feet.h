@@ -1,0 +1,19 @@
+#pragma once
+// Elements cut at the feet of what stands on their surface.
+
+#include <cstddef>
+
+#include "solver/hierarchy/element_mesh.h"
+#include "solver/hierarchy/shortest_edge.h"
+
+namespace clerestory {
+
+/// Cuts the edges of leaves' outlines that go from one corner of more than 180 degrees to another, those of a hole that
+/// a leg, a post or a small box leaves in a floor: in their middles and at an eighth from both ends. What stands there
+/// takes half of the view from all of the edge, and a quarter from its ends: no difference between these tells of it.
+///
+/// share    of the shortest edge: an edge below it is not cut.
+/// returns  how often an edge was cut.
+std::size_t cut_at_feet(ElementMesh& mesh, const ShortestEdge& shortest_edge, double share);
+
+}  // namespace clerestory

@@ -1,6 +1,7 @@
 #include "pipeline/repeat_to_target.h"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "pipeline/target_rounds.h"
 #include "pipeline/wording.h"
+#include "solver/methods/form_factor_matrix.h"
 #include "solver/model/error.h"
 #include "solver/run/memory_estimate.h"
 
@@ -74,6 +76,9 @@ bool may_be_too_much(const Settings& s, const Monitor& monitor) {
   return monitor.has_deadline() && s.solve.method == Method::hierarchical;
 }
 
+constexpr std::size_t kFinestLevel = 2;
+static_assert(kTargetRounds[kFinestLevel].accuracy == Accuracy::fine && kTargetRounds[kFinestLevel].tighten == 0);
+
 Settings of_round(Settings asked, std::size_t round) {
   asked.solve.accuracy = kTargetRounds[round].accuracy, asked.solve.tighten = kTargetRounds[round].tighten;
   return asked;
@@ -85,6 +90,17 @@ std::string name_of(const TargetRound& round) {
   return std::string(kAccuracyNames[static_cast<std::size_t>(round.accuracy)]) + kTimes[round.tighten];
 }
 
+bool has_matrix(const Settings& s) {
+  return s.solve.method == Method::gauss_seidel || s.solve.method == Method::jacobi;
+}
+
+/// How much longer a later round takes.
+double times_longer(const Settings& s, std::size_t now, std::size_t next) {
+  const TargetRound &then = kTargetRounds[now], &coming = kTargetRounds[next];
+  const double elements = coming.elements / then.elements;
+  return has_matrix(s) ? elements * elements : coming.time / then.time;
+}
+
 /// What the next round is expected to reach and to cost.
 std::string expectation(const Solved& solved, std::size_t now, std::size_t next, double seconds) {
   const TargetRound &then = kTargetRounds[now], &coming = kTargetRounds[next];
@@ -92,12 +108,18 @@ std::string expectation(const Solved& solved, std::size_t now, std::size_t next,
   const double expected = kConfidence * worst(solved, &Largest::measured) * coming.error / then.error,
                more = coming.elements / then.elements;
   const auto times = [&](std::size_t n) { return static_cast<std::size_t>(more * static_cast<double>(n)); };
-  const std::size_t memory = predicted_memory({solved.repairs.input_triangles, times(solved.repairs.triangles),
-                                               times(solved.repairs.triangles), times(solved.patches.patch_count()),
+  const std::size_t patches = times(solved.patches.patch_count());
+  const std::size_t memory = (has_matrix(solved.settings) ? form_factor_bytes(patches) : 0) +
+                             predicted_memory({solved.repairs.input_triangles, times(solved.repairs.triangles),
+                                               times(solved.repairs.triangles), patches,
                                                times(solved.lightmap.position.size()), times(solved.solution.links)});
-  return "error up to " + percent(error) + " with " + name_of(then) + ", asked for " + percent(target) + ": " +
-         name_of(coming) + " is expected to reach " + (expected <= target ? "it" : percent(expected) + " only") +
-         ", in about " + duration(seconds * coming.time / then.time) + " and " + bytes(memory);
+  const std::string reached = error <= target ? percent(std::abs(solved.solution.energy.imbalance())) +
+                                                    " of the light is missing or too much with " + name_of(then) + ": "
+                                              : "error up to " + percent(error) + " with " + name_of(then) +
+                                                    ", asked for " + percent(target) + ": ";
+  return reached + name_of(coming) + " is expected to reach " +
+         (expected <= target ? "it" : percent(expected) + " only") + ", in about " +
+         duration(seconds * times_longer(solved.settings, now, next)) + " and " + bytes(memory);
 }
 
 void say_coarser(Solution& solution, Accuracy level, Accuracy asked) {
@@ -115,7 +137,7 @@ bool is_better(const Solved& a, const Solved& b) { return a.error && (!b.error |
 
 bool meets_target(const Solved& s) {
   if (!s.settings.target_error) return true;
-  return s.error && worst_error(s) <= *s.settings.target_error;
+  return s.error && worst_error(s) <= *s.settings.target_error && keeps_its_light(s);
 }
 
 Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRound& round) {
@@ -161,10 +183,16 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
     std::size_t next = round_for(*asked.target_error / kConfidence, now, worst(best, &Largest::measured));
     const double took = std::chrono::duration<double>(Clock::now() - round_start).count();
     observer.step(expectation(best, now, next, took));
-    while (next > now && took * kTargetRounds[next].time / kTargetRounds[now].time > monitor.seconds_left()) --next;
+    while (next > now && took * times_longer(asked, now, next) > monitor.seconds_left()) --next;
     if (next == now) {
-      observer.step("there is no time for it");
-      best.solution.stop = StopReason::time_limit;
+      if (may_be_too_much(asked, monitor) && took < monitor.seconds_left()) {
+        observer.step("there is no time for it; what there is time for comes instead");
+        Solved finer = attempt(of_round(asked, kFinestLevel), true);
+        if (!finer.empty() && is_better(finer, best)) best = std::move(finer);
+      } else {
+        observer.step("there is no time for it");
+      }
+      if (!meets_target(best)) best.solution.stop = StopReason::time_limit;
       break;
     }
     // What is solved already must not be lost to a try that needs too much.
@@ -176,8 +204,9 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
       const double then = worst_error(finer);
       if (is_better(finer, best)) best = std::move(finer);
       if (then > kHelped * error && !meets_target(best) && !monitor.should_stop()) {
-        observer.step("error up to " + percent(then) +
-                      ": finer elements and more rays hardly help, so this was the last");
+        observer.step("error up to " + percent(then) + " with " + name_of(kTargetRounds[now]) +
+                      ": finer elements and more rays hardly help, so this was the last" +
+                      (worst_error(best) < then ? ", and the one before is kept" : ""));
         break;
       }
     } catch (const InputError& e) {

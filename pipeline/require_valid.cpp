@@ -93,6 +93,9 @@ void check_settings(const Scene& scene, const Settings& s) {
   if (s.detail && !(std::isfinite(*s.detail) && *s.detail >= 0))
     refuse(scene, "detail = " + rounded(*s.detail) + " is below 0.");
   positive(s.target_error, "target_error");
+  if (s.target_error && *s.target_error >= 1)
+    refuse(scene, "target_error = " + rounded(*s.target_error) + " is " + percent(*s.target_error) +
+                      "; it is relative: 0.02 is 2 %.");
   if (s.target_error && s.error_samples == 0u)
     refuse(scene, "a target error cannot be kept without measuring the error; leave out --no-error, or the target.");
   positive(s.time_limit, "time_limit");

@@ -13,17 +13,26 @@ namespace {
 
 constexpr double kMostImbalance = 0.01;
 
-void warn_about_energy(const EnergyBalance& energy, Observer& observer) {
+bool was_stopped(const Solved& s) {  // perhaps in the midst
+  return s.solution.stop == StopReason::time_limit || s.solution.stop == StopReason::interrupted;
+}
+
+/// What helps.
+std::string cure(const Solved& s, const std::string& otherwise) {
+  return was_stopped(s) ? "it was stopped before its end; give it more time." : otherwise;
+}
+
+void warn_about_energy(const Solved& s, Observer& observer) {
+  if (keeps_its_light(s)) return;
+  const EnergyBalance& energy = s.solution.energy;
   const double off = energy.imbalance();
-  if (std::abs(off) <= kMostImbalance) return;
+  const std::string what_helps = " Do not rely on them; " + cure(s, "try --accuracy fine or a smaller --max-element.");
   const std::string lumen = rounded(kWhiteEfficacy * std::abs(off) * energy.emitted) + " lm of " +
                             rounded(kWhiteEfficacy * energy.emitted) + " lm";
   observer.warn(off > 0 ? percent(off) + " of the light is missing from this result (" + lumen +
-                              "): illuminances are too low, not everywhere alike. Do not rely on them; try --accuracy "
-                              "fine or a smaller --max-element."
+                              "): illuminances are too low, not everywhere alike." + what_helps
                         : "this result holds " + percent(-off) + " more light than was sent (" + lumen +
-                              "): illuminances are too high, not everywhere alike. Do not rely on them; try --accuracy "
-                              "fine or a smaller --max-element.");
+                              "): illuminances are too high, not everywhere alike." + what_helps);
 }
 
 /// Light that no path of the measurement met may come through a gap too small for them.
@@ -48,19 +57,20 @@ void warn_about_error(const Solved& s, Observer& observer) {
   if (e.lower() <= stated) return;
   observer.warn("the measured error " + (is_in_room ? "in '" + worst->name + "' " : std::string()) + "is " +
                 percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), more than the " + percent(stated) +
-                " that this accuracy stands for: light changes faster than the elements show, beside a lamp or a "
-                "narrow gap. Means and sensors are better than single values of the picture; try --accuracy fine, a "
-                "smaller --max-element or --target-error.");
+                " that this accuracy stands for: " +
+                (s.settings.solve.method == Method::path
+                     ? "too few paths find the light. Do not rely on single values; try --accuracy fine."
+                     : "light changes faster than the elements show, beside a lamp or a narrow gap. Do not rely on "
+                       "single values of the picture; " +
+                           cure(s, "try --accuracy fine, a smaller --max-element or --target-error.")));
 }
 
 void warn_about_sensors(const Solved& s, Observer& observer) {
-  const bool was_stopped =
-      s.solution.stop == StopReason::time_limit || s.solution.stop == StopReason::interrupted;  // perhaps in the midst
-  if (was_stopped || !s.error || s.sensor_E.size() == 0) return;
+  if (!s.error || s.sensor_E.size() == 0) return;
   double most = 0;
   for (std::size_t k = 0; k < s.sensor_E.size(); ++k) most = std::max(most, photometric(s.sensor_E[k]));
   if (!s.error_sensors) {
-    if (most == 0 || s.buried_sensors >= s.sensor_E.size()) return;
+    if (most == 0 || was_stopped(s) || s.buried_sensors >= s.sensor_E.size()) return;
     observer.warn(
         "how wrong the sensors are is not known: they show up to " + rounded(most) +
         " lx, but no light was found on the paths that measure the error, so it comes through a gap too small "
@@ -72,11 +82,17 @@ void warn_about_sensors(const Solved& s, Observer& observer) {
   const bool is_in_set =
       worst && s.error_sensors->parts.size() > 1 && worst->figures.lower() > s.error_sensors->lower();
   const ErrorFigures& e = is_in_set ? worst->figures : *s.error_sensors;
+  constexpr double kUseless = 0.5;  // of a bound
+  if (e.bound && e.rms_relative > kUseless)
+    return observer.warn("how wrong the sensors are is hardly known: below " + percent(e.rms_relative) +
+                         " rms is all that the paths tell which measure it. Do not rely on them; " +
+                         cure(s, "try --error-samples 4096."));
   if (e.lower() <= stated) return;
   observer.warn("the measured error of the sensors " + (is_in_set ? "'" + worst->name + "' " : std::string()) + "is " +
                 percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), more than the " + percent(stated) +
                 " that this accuracy stands for: their light comes from little lamps, through narrow gaps or over many "
-                "surfaces. Do not rely on single values; try --accuracy fine.");
+                "surfaces. Do not rely on single values; " +
+                cure(s, "try --accuracy fine."));
 }
 
 /// What it means for a person when a law is broken.
@@ -105,18 +121,20 @@ void warn_about_laws(const Solved& s, Observer& observer) {
                   (others > 0 ? "and " + counted(static_cast<unsigned long long>(others), "other room") + " " : "") +
                   broken(check.law) + ": it is off by " + percent(worst->worst) + ", and up to " +
                   percent(worst->bound) +
-                  " is what the accuracy and the check leave open. Do not rely on this result there; try --accuracy "
-                  "fine, and look at the model for gaps and faces that lie in each other.");
+                  " is what the accuracy and the check leave open. Do not rely on this result there; " +
+                  cure(s, "try --accuracy fine, and look at the model for gaps and faces that lie in each other."));
   }
 }
 
 }  // namespace
 
+bool keeps_its_light(const Solved& s) { return std::abs(s.solution.energy.imbalance()) <= kMostImbalance; }
+
 bool keeps_laws(const Solved& s) { return std::ranges::all_of(s.laws, &LawCheck::holds); }
 
 void warn_about_result(const Solved& solved, Observer& observer) {
   if (solved.empty()) return;
-  warn_about_energy(solved.solution.energy, observer);
+  warn_about_energy(solved, observer);
   warn_about_unknown(solved, observer);
   warn_about_error(solved, observer);
   warn_about_sensors(solved, observer);

@@ -12,42 +12,62 @@
 #include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/near_planes.h"
+#include "solver/model/box.h"
 #include "solver/model/error.h"
 #include "solver/model/random_stream.h"
 
 namespace clerestory {
 namespace {
 
-/// Share of some directions, spread evenly over the sphere, in which nothing is met.
-double open_share(const Problem& problem, const Vec3& position, int directions) {
+/// What rays meet in some directions, spread evenly over the sphere.
+struct Surroundings {
+  double open = 0;  ///< share of them that meet nothing
+  Box met;          ///< around all that is met
+};
+Surroundings look_around(const Problem& problem, const Vec3& position, int directions) {
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-  int escaped = 0;
+  Surroundings found;
   for (int i = 0; i < directions; ++i) {
     const double z = 1 - (2 * i + 1.0) / directions, r = std::sqrt(1 - z * z), phi = i * golden_angle;
-    if (problem.rays.first_hit(problem.patches, {position, {r * std::cos(phi), r * std::sin(phi), z}}).escaped())
-      ++escaped;
+    const Ray ray{position, {r * std::cos(phi), r * std::sin(phi), z}};
+    const Hit hit = problem.rays.first_hit(problem.patches, ray);
+    if (hit.escaped())
+      found.open += 1.0 / directions;
+    else if (!hit.reflected)
+      found.met.add(hit.position(ray));
   }
-  return double(escaped) / directions;
+  return found;
 }
 
-/// Name of the solid that all light of a luminaire ends in, or nothing: its rays meet the inner sides only of surfaces
-/// that are a small part of the model.
+/// Name of the solid that all light of a luminaire ends in, or nothing: its rays meet inner sides only, of surfaces
+/// that are a small part of the model; or mostly inner sides, as where a desk stands on a floor, in a space too low or
+/// narrow for a room.
 std::string solid_around(const Problem& problem, const PlacedLuminaire& luminaire) {
   constexpr std::uint32_t kRays = 512;
   constexpr double kSmallPart = 0.25;  // of all area; a room whose faces are wound outwards is more
+  constexpr double kRoom = 1.5;        // m, each way: as of sensors (buried_points.h)
   const PatchSet& patches = problem.patches;
   const Beam beam = beam_of(luminaire);
   std::vector<std::size_t> met;
+  std::size_t fronts = 0;
   for (std::uint32_t k = 0; k < kRays; ++k) {
     const auto u = sobol4(k, 3);
     const Vec3 d = direction_in(beam, u[0], u[1]);
     if (intensity(luminaire, d).is_black()) continue;
     const Hit hit = problem.rays.first_hit(patches, {ray_start(luminaire, luminaire.position, d), d});
-    if (hit.escaped() || hit.reflected) return {};
-    if (hit.patch.valid() && patches.side[hit.patch] != kBack) return {};
-    met.push_back(patches.side_surface[hit.triangle][kBack]);
+    if (hit.escaped() || hit.reflected || patches.front_material(hit.triangle).scatters_through()) return {};
+    if (hit.transmittance.max() < 1) return {};  // of a glass shade
+    if (hit.patch.valid() && patches.side[hit.patch] != kBack)
+      ++fronts;
+    else
+      met.push_back(patches.side_surface[hit.triangle][kBack]);
   }
-  if (met.empty()) return {};
+  if (met.empty() || fronts > met.size()) return {};
+  constexpr int kDirections = 64;
+  const Surroundings around = look_around(problem, luminaire.position, kDirections);
+  const Vec3 size = around.met.upper - around.met.lower;
+  if (around.open == 0 && std::min({size.x, size.y, size.z}) < kRoom) return patches.surfaces[met.front()];
+  if (fronts > 0) return {};
   std::vector<std::size_t> surfaces = met;
   std::ranges::sort(surfaces);
   surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
@@ -74,14 +94,14 @@ void warn_about_luminaires(const Problem& problem, Observer& observer) {
   std::size_t shown = 0, more = 0;
   for (const PlacedLuminaire& luminaire : luminaires) {
     if (luminaire.is_image()) continue;
-    const bool may_be_open = open_share(problem, luminaire.position, first_look) > kOpen;
+    const bool may_be_open = look_around(problem, luminaire.position, first_look).open > kOpen;
     if (may_be_open && shown == kShown) {
       ++more;
       continue;
     }
-    const double open = may_be_open ? open_share(problem, luminaire.position, kDirections) : 0;
-    const bool look_around = open <= kOpen && first_look == kDirections && shown < kShown;
-    const std::string solid = look_around ? solid_around(problem, luminaire) : std::string();
+    const double open = may_be_open ? look_around(problem, luminaire.position, kDirections).open : 0;
+    const bool look_inside = open <= kOpen && first_look == kDirections && shown < kShown;
+    const std::string solid = look_inside ? solid_around(problem, luminaire) : std::string();
     if (open <= kOpen && solid.empty()) continue;
     ++shown;
     const Vec3 p = luminaire.position + problem.patches.origin;
@@ -167,10 +187,11 @@ bool has_light(const Scene& scene) {
 
 void require_light(const Scene& scene) {
   if (has_light(scene)) return;
-  throw InputError(scene.file +
-                   ": there is no light at all: no material that emits, no luminaire, no sky, no sun. Add a sky with "
-                   "--sky cie-overcast:10000, or in a scene file give a material \"luminous_exitance\", or add "
-                   "\"luminaires\", \"sky\" or \"sun\".");
+  throw InputError(
+      scene.file +
+      ": there is no light at all: no material that emits, no luminaire that gives any, no sky, no sun. Add a sky with "
+      "--sky cie-overcast:10000, or in a scene file give a material \"luminous_exitance\", or add "
+      "\"luminaires\", \"sky\" or \"sun\".");
 }
 
 void warn_about_scene(const Scene& scene, Observer& observer) {

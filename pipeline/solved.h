@@ -45,5 +45,7 @@ bool meets_target(const Solved& solved);
 
 /// Whether all laws hold that were checked. True when none was.
 bool keeps_laws(const Solved& solved);
+/// Whether no more than 1 % of the light went missing or was made.
+bool keeps_its_light(const Solved& solved);
 
 }  // namespace clerestory

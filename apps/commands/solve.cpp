@@ -50,6 +50,9 @@ void say_why(ExitCode code, const Solved& solved, Console& console) {
   else if (solved.solution.stop == StopReason::iteration_limit)
     console.warn("the method stopped before it converged, at a residual of " + percent(solved.solution.residual) +
                  "; the result so far is written.");
+  else if (!meets_target(solved) && !keeps_its_light(solved))
+    console.warn("the target error of " + percent(*settings.target_error) +
+                 " was not reached: light is missing or too much; the result is written.");
   else if (!meets_target(solved))
     console.warn("the target error of " + percent(*settings.target_error) + " was not reached" +
                  (solved.error ? ": it is " + error_line(*solved.error) : "") + "; the result is written.");

@@ -118,8 +118,9 @@ SolverSettings read_settings(const JsonObject& object) {
   settings.max_element =
       object.number("max_element", {.low = 0, .low_allowed = false, .advice = "it is an edge in metres"});
   settings.detail = object.number("detail", {.low = 0, .advice = "it is a length in metres"});
-  settings.target_error =
-      object.number("target_error", {.low = 0, .low_allowed = false, .advice = "it is relative: 0.02 is 2 %"});
+  settings.target_error = object.number(
+      "target_error",
+      {.low = 0, .high = 1, .low_allowed = false, .high_allowed = false, .advice = "it is relative: 0.02 is 2 %"});
   settings.time_limit = object.number("time_limit", {.low = 0, .low_allowed = false, .advice = "it is in seconds"});
   if (object.has("memory_limit")) settings.memory_limit = read_memory_size(object, "memory_limit");
   if (const auto seed =

@@ -11,6 +11,7 @@
 #include "solver/evaluate/two_gathers.h"
 #include "solver/illumination/illumination.h"
 #include "solver/model/error.h"
+#include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
@@ -46,13 +47,38 @@ PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observ
   return std::move(*prepared);
 }
 
+/// How much light straight from sun and luminaires changes within each patch, between its corners and its middle; empty
+/// where that would take long.
+std::vector<double> change_within(const Problem& problem, std::uint64_t seed) {
+  constexpr std::size_t kMostPairs = 2'000'000;
+  const PatchSet& patches = problem.patches;
+  const std::size_t lights = problem.lights.luminaires.size() + problem.lights.suns.size();
+  if (lights == 0 || patches.patch_count() * lights > kMostPairs) return {};
+  const Illumination light(problem);
+  std::vector<double> change(patches.patch_count());
+  parallel_for(change.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto x = patches.corner_positions(PatchId{i});
+      const Vec3 n = patches.normal[i], middle = (x[0] + x[1] + x[2]) / 3;
+      double low = std::numeric_limits<double>::infinity(), high = 0;
+      for (const Vec3& corner : {x[0], x[1], x[2], middle}) {
+        const Vec3 p = problem.rays.off_surface(middle + (corner - middle) * 0.98, n);
+        const double E = luminous_mean(light.sampler.delta_light(p, n, {.sun_rays = 1}, seed));
+        low = std::min(low, E), high = std::max(high, E);
+      }
+      change[i] = high - low;
+    }
+  });
+  return change;
+}
+
 }  // namespace
 
 SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer& observer,
                                std::chrono::steady_clock::time_point end)
     : seed_(seed), prepared_(prepare_reference(scene, seed, observer, end)) {
   const PatchSet& patches = prepared_.scene.patches;
-  const PointsByRoom by_room(patches);
+  const PointsByRoom by_room(patches, change_within(prepared_.scene.problem(), seed));
   if (!(by_room.total() > 0)) throw InputError(scene.file + ": no surface that light can reach has an area.");
   for (std::size_t k = 0; k < by_room.areas().size(); ++k)
     rooms_.push_back({patches.rooms.empty() ? "all surfaces" : patches.rooms[k], by_room.areas()[k],

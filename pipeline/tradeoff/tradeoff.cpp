@@ -7,6 +7,13 @@
 
 namespace clerestory {
 
+namespace {
+
+/// What the rms is for sure.
+double at_most(const Tradeoff::Error& e) { return e.bound ? e.rms : e.rms + e.confidence; }
+
+}  // namespace
+
 void choose(Tradeoff& t) {
   for (Tradeoff::Row& row : t.rows) {
     row.at_front = true;
@@ -20,7 +27,7 @@ void choose(Tradeoff& t) {
   for (const double target : kTradeoffTargets) {
     Tradeoff::Choice choice{target, {}};
     for (std::size_t i = 0; i < t.rows.size(); ++i)
-      if (t.rows[i].worst.rms <= target && (!choice.row || t.rows[i].wall_s < t.rows[*choice.row].wall_s))
+      if (at_most(t.rows[i].worst) <= target && (!choice.row || t.rows[i].wall_s < t.rows[*choice.row].wall_s))
         choice.row = i;
     t.choices.push_back(choice);
   }

@@ -34,7 +34,7 @@ struct Tradeoff {
   };
   struct Choice {
     double target = 0;               ///< rms in the worst room [1]
-    std::optional<std::size_t> row;  ///< the fastest that keeps it; none does
+    std::optional<std::size_t> row;  ///< the fastest that keeps it, its confidence included; none does
   };
 
   std::string input, version;

@@ -44,7 +44,7 @@ std::string tradeoff_page(const Tradeoff& t) {
   std::string page =
       text(kHead, "<title>Time against error: ", xml_text(t.input), "</title>\n</head>\n<body>\n<h1>",
            xml_text(t.input), "</h1>\n<h2>What to choose</h2>\n<p>The fastest run whose rms error in the ",
-           "worst room keeps a target:</p>\n<ul>\n");
+           "worst room, its confidence included, keeps a target:</p>\n<ul>\n");
   for (const std::string& line : choices_as_text(t)) page += "<li>" + xml_text(line) + "</li>\n";
   page += "</ul>\n<h2>Time against error</h2>\n" + svg_of(tradeoff_chart(t));
   page +=

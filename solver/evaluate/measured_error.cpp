@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -155,12 +156,27 @@ std::vector<ErrorOfPart> parts_of(const PointsByRoom& by_room, const PatchSet& p
   return parts;
 }
 
+/// How much of the field changes within each patch, and between it and the patch's own irradiance: a spot that all
+/// vertices miss.
+std::vector<double> change_within(const VertexLightmap& lightmap, const Field& E) {
+  std::vector<double> change(lightmap.corners.size());
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    double low = std::numeric_limits<double>::infinity(), high = 0, mean = 0;
+    for (const std::uint32_t p : lightmap.corners[i]) {
+      const double x = luminous_mean(lightmap.E[p]);
+      low = std::min(low, x), high = std::max(high, x), mean += x / 3;
+    }
+    change[i] = std::max(high - low, std::abs(luminous_mean(E[i]) - mean));
+  }
+  return change;
+}
+
 }  // namespace
 
 MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightmap, const Solution& solution,
                             const ErrorEffort& effort, std::uint64_t seed, const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
-  const PointsByRoom by_room(patches);
+  const PointsByRoom by_room(patches, change_within(lightmap, solution.E));
   if (!(by_room.total() > 0)) return {};
   const RayScene rays = problem.rays.with_nearer_ends();
 

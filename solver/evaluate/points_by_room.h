@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solver/model/patch_set.h"
@@ -20,11 +21,14 @@ struct PointInRoom {
 };
 
 /// Patches one after another, room after room, each as long as its chance to be looked at: a third of the looks go by
-/// area, a third by its root, and a third to each large room alike. Patches without rooms are one room.
+/// area, a third by its root, and a third to each large room alike. Patches without rooms are one room. Inside of a
+/// room two thirds of the looks go by area, and a third to where light changes within patches: a bright spot on a
+/// hundredth of the area may be all of an error.
 class PointsByRoom {
  public:
   /// patches  are kept by reference.
-  explicit PointsByRoom(const PatchSet& patches);
+  /// change   by patch, how much light changes within it, in any unit; empty: not known.
+  explicit PointsByRoom(const PatchSet& patches, std::span<const double> change = {});
 
   double total() const { return total_; }  ///< 0: nothing has an area
   std::size_t large_rooms() const { return large_rooms_; }
@@ -35,8 +39,8 @@ class PointsByRoom {
  private:
   const PatchSet& patches_;
   std::vector<std::uint32_t> order_;
-  std::vector<double> cumulative_;
-  std::vector<double> areas_, weight_;  ///< by room
+  std::vector<double> cumulative_, weight_;  ///< by patch in that order
+  std::vector<double> areas_;                ///< by room
   double total_ = 0;
   std::size_t large_rooms_ = 0;
 };

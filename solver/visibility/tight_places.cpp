@@ -123,14 +123,15 @@ TightPlaces::TightPlaces(const PatchSet& patches, double lift) : reach_(kReach *
 void TightPlaces::Cells::lay(const std::vector<std::array<Vec3, 3>>& triangles, double reach) {
   constexpr double kMostCells = 1 << 24;   // bits: 2 MB, which stay near the processor
   constexpr double kMostInARow = 1 << 12;  // where all lie in a plane or in a line
+  constexpr double kMostInReach = 4;  // smaller ones tell no more: something far away may make the reach a room's size
   Box all;
   for (const auto& triangle : triangles)
     for (const Vec3& corner : triangle) all.add(corner);
   all = all.grown(reach);
   lower_ = all.lower;
   const Vec3 size = all.upper - all.lower;
-  per_metre_ =
-      std::min(std::cbrt(kMostCells / (size.x * size.y * size.z)), kMostInARow / std::max({size.x, size.y, size.z}));
+  per_metre_ = std::min({std::cbrt(kMostCells / (size.x * size.y * size.z)),
+                         kMostInARow / std::max({size.x, size.y, size.z}), kMostInReach / reach});
   for (std::size_t k = 0; k < 3; ++k) count_[k] = static_cast<std::size_t>(size[static_cast<int>(k)] * per_metre_) + 1;
   is_near_.assign(count_[0] * count_[1] * count_[2], false);
   for (const auto& triangle : triangles) {

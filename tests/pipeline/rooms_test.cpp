@@ -176,7 +176,9 @@ TEST(Rooms, AreResolvedInALargeBuildingAsTheyWouldBeAlone) {
       "materials": { "*": { "reflectance": 0.6 } }, "rooms": [{ "name": "cell", "surfaces": ["table"] }],
       "luminaires": [ { "type": "point", "position": [12, 11.5, 3.3], "luminous_flux": 1000 },
                       { "type": "point", "position": [50, 50, 10], "luminous_flux": 1e5 } ] })";
-    return solve_scene(read_scene(folder / "s.json"), {.solve = {.accuracy = Accuracy::standard}});
+    Settings settings{.solve = {.accuracy = Accuracy::standard}};
+    settings.error_samples = 4096;  // some eighty of them in the cell
+    return solve_scene(read_scene(folder / "s.json"), settings);
   };
   const auto elements_in_cell = [](const Solved& s) {
     const auto cell_number =

@@ -322,10 +322,11 @@ TEST(WarnAboutResult, SaysWhenTheErrorOfTheSensorsIsLargeOrNotKnown) {
   EXPECT_TRUE(warnings().empty());
 }
 
-TEST(SolveScene, SaysThatALampStandsInsideOfASolid) {
+/// A room with a table or, from the floor up, a chest.
+Scene room_with_table(double bottom) {
   Scene scene = box_with_lamp(1.5);
   scene.surfaces.push_back("table");
-  for (int c = 0; c < 8; ++c) scene.polygons.add_vertex({c & 1 ? 3.0 : 2.0, c & 2 ? 2.0 : 1.0, c & 4 ? 0.75 : 0.70});
+  for (int c = 0; c < 8; ++c) scene.polygons.add_vertex({c & 1 ? 3.0 : 2.0, c & 2 ? 2.0 : 1.0, c & 4 ? 0.75 : bottom});
   for (const auto& face : {std::array{8, 10, 11, 9},
                            {12, 13, 15, 14},
                            {8, 9, 13, 12},
@@ -335,6 +336,11 @@ TEST(SolveScene, SaysThatALampStandsInsideOfASolid) {
     for (const int corner : face) scene.polygons.add_corner(static_cast<std::uint32_t>(corner));
     scene.polygons.end_face(MaterialId{std::size_t{0}}, SurfaceId{std::size_t{1}});
   }
+  return scene;
+}
+
+TEST(SolveScene, SaysThatALampStandsInsideOfASolid) {
+  Scene scene = room_with_table(0.70);
   Listener before;
   solve_scene(scene, draft(), before);
   EXPECT_FALSE(any_says(before.warnings, "inside of the solid"));
@@ -343,6 +349,17 @@ TEST(SolveScene, SaysThatALampStandsInsideOfASolid) {
   solve_scene(scene, draft(), observer);
   EXPECT_TRUE(
       any_says(observer.warnings, "luminaire 'lost' at (2.500, 1.500, 0.7300) stands inside of the solid 'table'"));
+}
+
+TEST(SolveScene, SaysThatALampStandsInsideOfASolidThatStandsOnTheFloor) {
+  Scene scene = room_with_table(0);
+  scene.lights.luminaires.push_back({"lost", {2.5, 1.5, 0.3}, {}, PointLuminaire{Spectrum(5.0)}});
+  scene.lights.luminaires.push_back({"found", {2.5, 1.5, 0.8}, {}, PointLuminaire{Spectrum(5.0)}});
+  Listener observer;
+  solve_scene(scene, draft(), observer);
+  EXPECT_TRUE(
+      any_says(observer.warnings, "luminaire 'lost' at (2.500, 1.500, 0.3000) stands inside of the solid 'table'"));
+  EXPECT_FALSE(any_says(observer.warnings, "'found'"));
 }
 
 TEST(RequireSound, RefusesWhatIsNoNumberOrNegativeAndClearsRounding) {

@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/evaluate/points_by_room.h"
 #include "solver/model/random_stream.h"
 #include "solver/paths/path_tracer.h"
+#include "tests/support/room_with_blocks.h"
 #include "tests/support/unjoined_lightmap.h"
 
 namespace clerestory {
@@ -140,6 +142,26 @@ TEST(MeasuredError, LooksIntoASmallDarkSpaceBesideALargeBrightOne) {
   EXPECT_EQ(e.parts[1].name, "small");
   EXPECT_EQ(e.parts[1].figures.samples, 0u) << "no path finds light there";
   EXPECT_LT(e.parts[0].figures.upper(), 0.02);
+}
+
+TEST(PointsByRoom, AThirdGoesWhereLightChangesAndAreasStayRight) {
+  test::PatchBuilder b(0.5);
+  b.rectangle({0, 0, 0}, {10, 0, 0}, {0, 10, 0}, 20, 20);
+  const PatchSet patches = b.build();
+  std::vector<double> change(patches.patch_count());
+  change[5] = 3;  // one in 800
+  constexpr std::size_t kPoints = 3000;
+  double there = 0, left = 0, all = 0;
+  for (const PointInRoom& at : PointsByRoom(patches, change).points(kPoints, 1)) {
+    there += at.patch == 5;
+    all += at.weight;
+    if (patches.corner_positions(PatchId{at.patch})[0].x + patches.origin.x < 4.75) left += at.weight;
+  }
+  EXPECT_NEAR(there / kPoints, 1.0 / 3, 0.01);
+  double area = 0;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i)
+    if (patches.corner_positions(PatchId{i})[0].x + patches.origin.x < 4.75) area += patches.area[i];
+  EXPECT_NEAR(left / all, area / patches.total_area(), 0.02);
 }
 
 TEST(MeasuredError, TheLargestIsThatOfTheWorstPartThatCounts) {

@@ -90,6 +90,22 @@ std::string name_of(const TargetRound& round) {
   return std::string(kAccuracyNames[static_cast<std::size_t>(round.accuracy)]) + kTimes[round.tighten];
 }
 
+/// Rooms that keep the target for sure, each with the first level at which it did: the next round need not resolve them
+/// any better. None where sensors do not keep it, for all rooms may light them.
+std::vector<RoomLevel> good_rooms(const Solved& s) {
+  std::vector<RoomLevel> good;
+  const double target = *s.settings.target_error;
+  if (!s.error || (s.error_sensors && s.error_sensors->largest().upper > target)) return good;
+  for (const ErrorOfPart& part : s.error->parts) {
+    if (part.figures.samples == 0 || part.figures.upper() > target) continue;
+    const std::vector<RoomLevel>& before = s.settings.solve.good_rooms;
+    const auto same = std::ranges::find(before, part.name, &RoomLevel::room);
+    good.push_back(same != before.end() ? *same
+                                        : RoomLevel{part.name, s.settings.solve.accuracy, s.settings.solve.tighten});
+  }
+  return good;
+}
+
 bool has_matrix(const Settings& s) {
   return s.solve.method == Method::gauss_seidel || s.solve.method == Method::jacobi;
 }
@@ -198,7 +214,9 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
     // What is solved already must not be lost to a try that needs too much.
     try {
       round_start = Clock::now();
-      Solved finer = attempt(of_round(asked, next), false);
+      Settings of_next = of_round(asked, next);
+      of_next.solve.good_rooms = good_rooms(best);
+      Solved finer = attempt(of_next, false);
       now = next;
       if (finer.empty() || !finer.error) break;
       const double then = worst_error(finer);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "pipeline/wording.h"
 #include "solver/model/units.h"
@@ -48,6 +50,21 @@ void warn_about_unknown(const Solved& s, Observer& observer) {
                 "try --error-samples 4096, or look for a small gap in the model.");
 }
 
+/// "; so it is in 'hall', 21.0 %, and 3 more rooms": those but the worst that are above what the accuracy stands for.
+std::string rooms_above(double stated, const MeasuredError& error, const ErrorOfPart* worst) {
+  constexpr std::size_t kShown = 3;
+  std::vector<const ErrorOfPart*> above;
+  for (const ErrorOfPart& part : error.parts)
+    if (&part != worst && error.counts(part) && part.figures.samples > 0 && part.figures.lower() > stated)
+      above.push_back(&part);
+  std::ranges::sort(above, std::greater<>(), [](const ErrorOfPart* p) { return p->figures.rms_relative; });
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kShown, above.size()); ++k)
+    text += (k == 0 ? "; so it is in '" : ", '") + above[k]->name + "', " + percent(above[k]->figures.rms_relative);
+  if (above.size() > kShown) text += ", and " + counted(above.size() - kShown, "more room");
+  return text;
+}
+
 void warn_about_error(const Solved& s, Observer& observer) {
   if (!s.error || s.settings.target_error) return;  // a target that is missed is said by who asked for it
   const double stated = effort(s.settings.solve.accuracy).vertex_tolerance;
@@ -57,7 +74,8 @@ void warn_about_error(const Solved& s, Observer& observer) {
   if (e.lower() <= stated) return;
   observer.warn("the measured error " + (is_in_room ? "in '" + worst->name + "' " : std::string()) + "is " +
                 percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), more than the " + percent(stated) +
-                " that this accuracy stands for: " +
+                " that this accuracy stands for" + (is_in_room ? rooms_above(stated, *s.error, worst) : std::string()) +
+                ": " +
                 (s.settings.solve.method == Method::path
                      ? "too few paths find the light. Do not rely on single values; try --accuracy fine."
                      : "light changes faster than the elements show, beside a lamp or a narrow gap. Do not rely on "

@@ -12,7 +12,7 @@ namespace clerestory {
 /// limit of its own.
 struct ShortestEdge {
   double anywhere = 0;
-  std::vector<double> in_room;  ///< by PatchSet::room, no more than `anywhere`; empty: the same in all
+  std::vector<double> in_room;  ///< by PatchSet::room; empty: the same in all
 
   ShortestEdge() = default;
   ShortestEdge(double edge) : anywhere(edge) {}  // NOLINT: a length is one

@@ -70,15 +70,30 @@ void require_possible(const Problem& problem, const SolveOptions& options) {
                      std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive or path"));
 }
 
-/// A room is resolved as it would be alone, in a model of its faces and as many behind them.
-ShortestEdge shortest_edges(const PatchSet& patches, double longest_edge, const Effort& e, int tighten) {
+/// A room is resolved as it would be alone, in a model of its faces and as many behind them; one that was good enough
+/// before, as it was then.
+ShortestEdge shortest_edges(const PatchSet& patches, double longest_edge, const Effort& e,
+                            const SolveOptions& options) {
   ShortestEdge edges = e.shortest_edge * longest_edge;
   if (patches.rooms.empty()) return edges;
   std::vector<double> area(patches.rooms.size());
   for (std::size_t i = 0; i < patches.patch_count(); ++i) area[patches.room[i]] += patches.area[i];
-  const double finer = e.shortest_edge * std::pow(kTighterEdge, tighten);
-  for (const double a : area)
-    edges.in_room.push_back(std::min(edges.anywhere, finer * longest_edge_for(e.triangles_to_halve, 2 * a)));
+  const auto alone = [&](std::size_t room, const Effort& level, int tighten) {
+    return level.shortest_edge * std::pow(kTighterEdge, tighten) *
+           longest_edge_for(level.triangles_to_halve, 2 * area[room]);
+  };
+  for (std::size_t k = 0; k < area.size(); ++k)
+    edges.in_room.push_back(std::min(edges.anywhere, alone(k, e, options.tighten)));
+  for (const RoomLevel& good : options.good_rooms) {
+    const auto k = static_cast<std::size_t>(std::ranges::find(patches.rooms, good.room) - patches.rooms.begin());
+    if (k == area.size()) continue;
+    const Effort then = effort(good.accuracy, good.tighten);
+    // The longest edge falls with the triangles that all of the model is to have.
+    const double anywhere = then.shortest_edge * longest_edge *
+                            std::sqrt(e.triangles_to_halve / then.triangles_to_halve) *
+                            std::pow(kTighterEdge, good.tighten - options.tighten);
+    edges.in_room[k] = std::max(edges.in_room[k], std::min(anywhere, alone(k, then, good.tighten)));
+  }
   return edges;
 }
 
@@ -99,7 +114,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
   const auto vertices_of = [&](const SolveOptions& level) {
     const Effort of_level = effort_of(level);
     return FieldOptions{.tolerance = of_level.vertex_tolerance,
-                        .shortest_edge = shortest_edges(problem.patches, longest_edge, of_level, options.tighten),
+                        .shortest_edge = shortest_edges(problem.patches, longest_edge, of_level, options),
                         .most_points = plan.most_points,
                         .quality = of_level.vertices,
                         .coarser = coarser_than(level, &Effort::vertices),

@@ -19,6 +19,13 @@
 
 namespace clerestory {
 
+/// A room that was good enough at an earlier, coarser level: its elements need not be smaller than there.
+struct RoomLevel {
+  std::string room;  ///< PatchSet::rooms
+  Accuracy accuracy;
+  int tighten;
+};
+
 struct SolveOptions {
   Method method = Method::hierarchical;
   Accuracy accuracy = Accuracy::standard;
@@ -30,6 +37,7 @@ struct SolveOptions {
   std::size_t memory_limit = 0;  ///< the peak of the process stays below by making the result coarser [bytes]; 0: none
   bool check_laws = false;       ///< fill SolvedPatches::laws
   int tighten = 0;               ///< times that the effort was raised to reach a target error (accuracy.h)
+  std::vector<RoomLevel> good_rooms{};  ///< of the hierarchical method
 };
 
 /// Triangles to aim for when no longest edge is given; twice as many each time that the effort was raised.

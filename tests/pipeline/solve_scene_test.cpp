@@ -214,6 +214,37 @@ Scene box_with_lamp(double distance) {
   return scene;
 }
 
+TEST(SolveScene, ResolvesRoomsThatWereGoodEnoughNoBetterThanThen) {
+  // Two rooms alike, 6 m apart, each with its lamp.
+  Scene scene = box_with_lamp(0.3);
+  scene.surfaces.push_back("other");
+  for (int c = 0; c < 8; ++c) scene.polygons.add_vertex({c & 1 ? 10.0 : 6.0, c & 2 ? 3.0 : 0.0, c & 4 ? 2.5 : 0.0});
+  for (const auto& face : {std::array{8, 9, 11, 10},
+                           {12, 14, 15, 13},
+                           {8, 12, 13, 9},
+                           {10, 11, 15, 14},
+                           {8, 10, 14, 12},
+                           {9, 13, 15, 11}}) {
+    for (const int corner : face) scene.polygons.add_corner(static_cast<std::uint32_t>(corner));
+    scene.polygons.end_face(MaterialId{std::size_t{0}}, SurfaceId{std::size_t{1}});
+  }
+  scene.lights.luminaires.push_back({"lamp", {7.7, 0.3, 1.1}, {}, PointLuminaire{Spectrum(10.0)}});
+  const auto elements = [&](const Settings& settings) {
+    const Solved s = solve_scene(scene, settings);
+    std::array<std::ptrdiff_t, 2> count{};
+    for (std::uint32_t room = 0; room < 2; ++room) count[room] = std::ranges::count(s.patches.room, room);
+    return std::pair{count, s.patches.rooms};
+  };
+  Settings settings;
+  const auto [fine, rooms] = elements(settings);
+  ASSERT_EQ(rooms.size(), 2u);
+  EXPECT_NEAR(static_cast<double>(fine[0]) / static_cast<double>(fine[1]), 1, 0.2);
+  settings.solve.good_rooms = {{rooms[1], Accuracy::draft, 0}};
+  const auto kept = elements(settings).first;
+  EXPECT_NEAR(static_cast<double>(kept[0]) / static_cast<double>(fine[0]), 1, 0.1);
+  EXPECT_LT(static_cast<double>(kept[1]), 0.7 * static_cast<double>(fine[1]));
+}
+
 TEST(SolveScene, KeepsTheEnergyOfALampHoweverNearToAWall) {
   for (const Method method : {Method::hierarchical, Method::progressive, Method::gauss_seidel})
     for (const double distance : {1e-6, 1e-3, 1e-2}) {

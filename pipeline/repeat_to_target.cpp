@@ -95,7 +95,7 @@ std::string name_of(const TargetRound& round) {
 std::vector<RoomLevel> good_rooms(const Solved& s) {
   std::vector<RoomLevel> good;
   const double target = *s.settings.target_error;
-  if (!s.error || (s.error_sensors && s.error_sensors->largest().upper > target)) return good;
+  if (!s.error || !keeps_its_light(s) || (s.error_sensors && s.error_sensors->largest().upper > target)) return good;
   for (const ErrorOfPart& part : s.error->parts) {
     if (part.figures.samples == 0 || part.figures.upper() > target) continue;
     const std::vector<RoomLevel>& before = s.settings.solve.good_rooms;
@@ -110,11 +110,16 @@ bool has_matrix(const Settings& s) {
   return s.solve.method == Method::gauss_seidel || s.solve.method == Method::jacobi;
 }
 
+/// How many more elements a later round has: others than `hierarchical` halve none.
+double times_more(const Settings& s, std::size_t now, std::size_t next) {
+  if (s.solve.method == Method::hierarchical) return kTargetRounds[next].elements / kTargetRounds[now].elements;
+  return s.max_element ? 1 : target_triangles(of_round(s, next).solve) / target_triangles(of_round(s, now).solve);
+}
+
 /// How much longer a later round takes.
 double times_longer(const Settings& s, std::size_t now, std::size_t next) {
-  const TargetRound &then = kTargetRounds[now], &coming = kTargetRounds[next];
-  const double elements = coming.elements / then.elements;
-  return has_matrix(s) ? elements * elements : coming.time / then.time;
+  const double more = times_more(s, now, next);
+  return has_matrix(s) ? more * more : kTargetRounds[next].time / kTargetRounds[now].time;
 }
 
 /// What the next round is expected to reach and to cost.
@@ -122,17 +127,18 @@ std::string expectation(const Solved& solved, std::size_t now, std::size_t next,
   const TargetRound &then = kTargetRounds[now], &coming = kTargetRounds[next];
   const double target = *solved.settings.target_error, error = worst_error(solved);
   const double expected = kConfidence * worst(solved, &Largest::measured) * coming.error / then.error,
-               more = coming.elements / then.elements;
+               more = times_more(solved.settings, now, next);
   const auto times = [&](std::size_t n) { return static_cast<std::size_t>(more * static_cast<double>(n)); };
   const std::size_t patches = times(solved.patches.patch_count());
   const std::size_t memory = (has_matrix(solved.settings) ? form_factor_bytes(patches) : 0) +
                              predicted_memory({solved.repairs.input_triangles, times(solved.repairs.triangles),
                                                times(solved.repairs.triangles), patches,
                                                times(solved.lightmap.position.size()), times(solved.solution.links)});
-  const std::string reached = error <= target ? percent(std::abs(solved.solution.energy.imbalance())) +
-                                                    " of the light is missing or too much with " + name_of(then) + ": "
-                                              : "error up to " + percent(error) + " with " + name_of(then) +
-                                                    ", asked for " + percent(target) + ": ";
+  const std::string reached =
+      error <= target && !keeps_its_light(solved)
+          ? percent(std::abs(solved.solution.energy.imbalance())) + " of the light is missing or too much with " +
+                name_of(then) + ": "
+          : "error up to " + percent(error) + " with " + name_of(then) + ", asked for " + percent(target) + ": ";
   return reached + name_of(coming) + " is expected to reach " +
          (expected <= target ? "it" : percent(expected) + " only") + ", in about " +
          duration(seconds * times_longer(solved.settings, now, next)) + " and " + bytes(memory);
@@ -147,7 +153,11 @@ void say_coarser(Solution& solution, Accuracy level, Accuracy asked) {
 
 constexpr double kHelped = 0.9;  ///< of the error before: else finer rounds are of no use
 
-bool is_better(const Solved& a, const Solved& b) { return a.error && (!b.error || worst_error(a) <= worst_error(b)); }
+bool is_better(const Solved& a, const Solved& b) {
+  if (!a.error || !b.error) return a.error.has_value();
+  if (meets_target(a) != meets_target(b)) return meets_target(a);
+  return worst_error(a) <= worst_error(b);
+}
 
 }  // namespace
 
@@ -198,21 +208,22 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
     const double error = worst_error(best);
     std::size_t next = round_for(*asked.target_error / kConfidence, now, worst(best, &Largest::measured));
     const double took = std::chrono::duration<double>(Clock::now() - round_start).count();
-    observer.step(expectation(best, now, next, took));
+    const std::size_t wanted = next;
     while (next > now && took * times_longer(asked, now, next) > monitor.seconds_left()) --next;
-    if (next == now) {
-      if (may_be_too_much(asked, monitor) && took < monitor.seconds_left()) {
-        observer.step("there is no time for it; what there is time for comes instead");
-        Solved finer = attempt(of_round(asked, kFinestLevel), true);
-        if (!finer.empty() && is_better(finer, best)) best = std::move(finer);
-      } else {
-        observer.step("there is no time for it");
-      }
-      if (!meets_target(best)) best.solution.stop = StopReason::time_limit;
-      break;
-    }
+    observer.step(expectation(best, now, next > now ? next : wanted, took));
     // What is solved already must not be lost to a try that needs too much.
     try {
+      if (next == now) {
+        const bool use_rest = now == 0 && may_be_too_much(asked, monitor) && took < monitor.seconds_left();
+        observer.step(use_rest ? "there is no time for it; what there is time for comes instead"
+                               : "there is no time for it");
+        best.solution.stop = StopReason::time_limit;
+        if (!use_rest) break;
+        Solved finer = attempt(of_round(asked, kFinestLevel), true);
+        if (!finer.empty() && is_better(finer, best)) best = std::move(finer);
+        if (meets_target(best)) best.solution.stop = StopReason::converged, best.solution.stopped_at.clear();
+        break;
+      }
       round_start = Clock::now();
       Settings of_next = of_round(asked, next);
       of_next.solve.good_rooms = good_rooms(best);
@@ -220,8 +231,9 @@ Solved repeat_to_target(const Settings& asked, Observer& observer, const SolveRo
       now = next;
       if (finer.empty() || !finer.error) break;
       const double then = worst_error(finer);
+      const bool helped = then <= kHelped * error || !keeps_its_light(finer);
       if (is_better(finer, best)) best = std::move(finer);
-      if (then > kHelped * error && !meets_target(best) && !monitor.should_stop()) {
+      if (!helped && !meets_target(best) && !monitor.should_stop()) {
         observer.step("error up to " + percent(then) + " with " + name_of(kTargetRounds[now]) +
                       ": finer elements and more rays hardly help, so this was the last" +
                       (worst_error(best) < then ? ", and the one before is kept" : ""));

@@ -44,8 +44,8 @@ Surroundings look_around(const Problem& problem, const Vec3& position, int direc
 /// narrow for a room.
 std::string solid_around(const Problem& problem, const PlacedLuminaire& luminaire) {
   constexpr std::uint32_t kRays = 512;
-  constexpr double kSmallPart = 0.25;  // of all area; a room whose faces are wound outwards is more
-  constexpr double kRoom = 1.5;        // m, each way: as of sensors (buried_points.h)
+  constexpr double kSmallPart = 0.25, kHalf = 0.5;  // of all area; a room whose faces are wound outwards is more
+  constexpr double kRoom = 1.5;                     // m, each way: as of sensors (buried_points.h)
   const PatchSet& patches = problem.patches;
   const Beam beam = beam_of(luminaire);
   std::vector<std::size_t> met;
@@ -63,11 +63,6 @@ std::string solid_around(const Problem& problem, const PlacedLuminaire& luminair
       met.push_back(patches.side_surface[hit.triangle][kBack]);
   }
   if (met.empty() || fronts > met.size()) return {};
-  constexpr int kDirections = 64;
-  const Surroundings around = look_around(problem, luminaire.position, kDirections);
-  const Vec3 size = around.met.upper - around.met.lower;
-  if (around.open == 0 && std::min({size.x, size.y, size.z}) < kRoom) return patches.surfaces[met.front()];
-  if (fronts > 0) return {};
   std::vector<std::size_t> surfaces = met;
   std::ranges::sort(surfaces);
   surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
@@ -79,7 +74,13 @@ std::string solid_around(const Problem& problem, const PlacedLuminaire& luminair
     all += area;
     if (std::ranges::binary_search(surfaces, std::size_t{patches.side_surface[t][kBack]})) own += area;
   }
-  return own < kSmallPart * all ? patches.surfaces[met.front()] : std::string();
+  if (fronts == 0 && own < kSmallPart * all) return patches.surfaces[met.front()];
+  constexpr int kDirections = 64;
+  const Surroundings around = look_around(problem, luminaire.position, kDirections);
+  const Vec3 size = around.met.upper - around.met.lower;
+  const double least = std::min({size.x, size.y, size.z});
+  const bool is_no_room = around.open == 0 && least >= 0 && least < kRoom && own < kHalf * all;
+  return is_no_room ? patches.surfaces[met.front()] : std::string();
 }
 
 /// The first of those that stand in the open one by one, the others by their number; of very many, each is looked at in

@@ -52,7 +52,8 @@ void say_why(ExitCode code, const Solved& solved, Console& console) {
                  "; the result so far is written.");
   else if (!meets_target(solved) && !keeps_its_light(solved))
     console.warn("the target error of " + percent(*settings.target_error) +
-                 " was not reached: light is missing or too much; the result is written.");
+                 " was not reached: light is missing or too much" +
+                 (solved.error ? ", and the error is " + error_line(*solved.error) : "") + "; the result is written.");
   else if (!meets_target(solved))
     console.warn("the target error of " + percent(*settings.target_error) + " was not reached" +
                  (solved.error ? ": it is " + error_line(*solved.error) : "") + "; the result is written.");
@@ -165,7 +166,7 @@ void add_solve_command(CLI::App& program, Task& task) {
   command
       .add_option(
           "--error-samples", s.error_samples,
-          "points that the error is measured at, up to 4096 (default: by accuracy and rooms, 4 to 12 % of the time)")
+          "points that the error is measured at, up to 4096 (default: by accuracy and rooms, 4 to 14 % of the time)")
       ->type_name("N")
       ->check(CLI::Range(8, 4096))
       ->excludes("--no-error");

@@ -235,7 +235,7 @@ GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3&
   if (!has_more_rays || !(at.std_error > pattern.quality().noise * luminous_mean(at.E))) return at;
   GatherPlan sharper = plan;
   sharper.bundle = plan_bundle(light, p, n, pattern, plan, rays);
-  return gather_as_planned(light, p, n, pattern, sharper, rays, row);
+  return sharper.bundle.empty() ? at : gather_as_planned(light, p, n, pattern, sharper, rays, row);
 }
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,

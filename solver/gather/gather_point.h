@@ -49,6 +49,8 @@ RayShares plan_bundle(const Illumination& light, const Vec3& p, const Vec3& n, c
 /// or lit, by shadow rays and by the bundle, weighted by the balance heuristic, and so are those that the plan's
 /// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land. What is noisier than the
 /// quality allows is gathered anew, with more of the bundle's rays where a pilot sees contrast: under a bed, in a gap.
+/// What less than one ray of the bundle finds seldom looks noisy: where it is all the light there is, E is low by a
+/// sixth in the mean, within a standard error as large as itself.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.

@@ -27,7 +27,7 @@ std::vector<double> angles_around(const ElementMesh& mesh, const std::vector<std
 
 }  // namespace
 
-std::size_t cut_at_feet(ElementMesh& mesh, const ShortestEdge& shortest_edge, double share) {
+std::size_t cut_at_feet(ElementMesh& mesh, const ShortestEdge& shortest_edge, double share, std::size_t most_points) {
   const std::vector<double> angle = angles_around(mesh, mesh.leaves());  // no cut changes it
   const auto sticks_in = [&](std::uint32_t p) { return p < angle.size() && angle[p] > std::numbers::pi + kSticksIn; };
   const auto is_foot_middle = [&](std::uint32_t p) {
@@ -52,7 +52,7 @@ std::size_t cut_at_feet(ElementMesh& mesh, const ShortestEdge& shortest_edge, do
   for (std::size_t before = cut + 1; before != cut;) {  // a leaf may have two such edges
     before = cut;
     for (const std::uint32_t leaf : mesh.leaves())
-      for (std::size_t k = 0; k < 3 && mesh[leaf].is_leaf(); ++k)
+      for (std::size_t k = 0; k < 3 && mesh[leaf].is_leaf() && mesh.points().position.size() < most_points; ++k)
         if (const double at = where(leaf, k); at > 0) mesh.cut(leaf, k, at), ++cut;
   }
   return cut;

@@ -349,7 +349,7 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
     return field;
   }
   field.E = field.delta_light = Field(0, problem.patches.channels);
-  cut_at_feet(mesh, options.shortest_edge, kFinest);
+  cut_at_feet(mesh, options.shortest_edge, kFinest, options.most_points);
   Gatherer gatherer(problem, B, slit_light, mesh, options, layers, monitor);
   field.in_time = !gatherer.is_coarser_than(options.quality);
   const double before = monitor.seconds_left();

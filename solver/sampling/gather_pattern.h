@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct GatherQuality {
   AreaBudget area;   ///< to each opening and each bright area that matters
   int bright_rays;   ///< shadow rays to bright patches
   int sun_rays;      ///< to each sun
-  double noise = 1;  ///< standard error, as a share of all light at a point, above which the bundle gets its most rays
+  /// Standard error, as a share of all light at a point, above which it is gathered anew with the bundle's most rays.
+  double noise = std::numeric_limits<double>::infinity();
 };
 
 /// Cosine-distributed directions in the frame of the normal (z), by stratum of the unit square. Those of a stratum are

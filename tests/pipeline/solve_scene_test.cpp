@@ -86,6 +86,7 @@ TEST(SolveScene, RefusesWhatNoFileCouldSay) {
            {[](S, O o) { o.channels = 2; }, "channels = 2"},
            {[](S, O o) { o.detail = -0.1; }, "detail"},
            {[](S, O o) { o.target_error = -1.0; }, "target_error"},
+           {[](S, O o) { o.target_error = 2.0; }, "it is relative: 0.02 is 2 %"},
            {[](S, O o) { o.solve.tighten = -1; }, "tighten"}})
     EXPECT_NE(refusal(spoil).find(word), std::string::npos) << word << ": " << refusal(spoil);
   Scene misspelt = glowing_box();
@@ -391,6 +392,25 @@ TEST(SolveScene, SaysThatALampStandsInsideOfASolidThatStandsOnTheFloor) {
   EXPECT_TRUE(
       any_says(observer.warnings, "luminaire 'lost' at (2.500, 1.500, 0.3000) stands inside of the solid 'table'"));
   EXPECT_FALSE(any_says(observer.warnings, "'found'"));
+}
+
+TEST(SolveScene, TakesALampInAnOpalShadeAndARoomWoundOutwardsForNoSolids) {
+  Scene scene = room_with_table(0);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].name = "opal", scene.materials[1].kind = MaterialKind::diffuser;
+  scene.materials[1].reflectance = Spectrum(0.3), scene.materials[1].transmittance = Spectrum(0.5);
+  for (std::size_t face = 6; face < 12; ++face) scene.polygons.material[face] = MaterialId{std::size_t{1}};
+  scene.lights.luminaires.push_back({"shaded", {2.5, 1.5, 0.3}, {}, PointLuminaire{Spectrum(5.0)}});
+  Listener opal;
+  solve_scene(scene, draft(), opal);
+  EXPECT_FALSE(any_says(opal.warnings, "inside of the solid"));
+  Scene corridor = box_with_lamp(0.5);
+  std::reverse(corridor.polygons.corner.begin(), corridor.polygons.corner.end());  // six faces of four corners
+  for (Vec3& v : corridor.polygons.vertices) v.y *= 0.4;
+  corridor.materials[0].sides = 2;
+  Listener outwards;
+  solve_scene(corridor, draft(), outwards);
+  EXPECT_FALSE(any_says(outwards.warnings, "inside of the solid"));
 }
 
 TEST(RequireSound, RefusesWhatIsNoNumberOrNegativeAndClearsRounding) {

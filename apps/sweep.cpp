@@ -101,7 +101,7 @@ std::vector<Run> runs_of(const std::string& input, const ReadOptions& read, cons
     for (const std::string_view accuracy : kAccuracyNames)
       for (std::size_t k = 0; k < std::size(kMethodNames); ++k) {
         const auto m = static_cast<Method>(k);
-        if ((m == Method::gauss_seidel || m == Method::jacobi) != with_matrix) continue;
+        if (has_matrix(m) != with_matrix) continue;
         const std::string method(kMethodNames[k]);
         runs.push_back({method, "--accuracy " + std::string(accuracy), shared});
         runs.back().arguments.insert(runs.back().arguments.end(),

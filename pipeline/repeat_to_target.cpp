@@ -100,14 +100,11 @@ std::vector<RoomLevel> good_rooms(const Solved& s) {
     if (part.figures.samples == 0 || part.figures.upper() > target) continue;
     const std::vector<RoomLevel>& before = s.settings.solve.good_rooms;
     const auto same = std::ranges::find(before, part.name, &RoomLevel::room);
+    const SolveOptions& now = s.settings.solve;
     good.push_back(same != before.end() ? *same
-                                        : RoomLevel{part.name, s.settings.solve.accuracy, s.settings.solve.tighten});
+                                        : RoomLevel{part.name, now.accuracy, now.tighten, s.repairs.max_element});
   }
   return good;
-}
-
-bool has_matrix(const Settings& s) {
-  return s.solve.method == Method::gauss_seidel || s.solve.method == Method::jacobi;
 }
 
 /// How many more elements a later round has: others than `hierarchical` halve none.
@@ -119,7 +116,7 @@ double times_more(const Settings& s, std::size_t now, std::size_t next) {
 /// How much longer a later round takes.
 double times_longer(const Settings& s, std::size_t now, std::size_t next) {
   const double more = times_more(s, now, next);
-  return has_matrix(s) ? more * more : kTargetRounds[next].time / kTargetRounds[now].time;
+  return has_matrix(s.solve.method) ? more * more : kTargetRounds[next].time / kTargetRounds[now].time;
 }
 
 /// What the next round is expected to reach and to cost.
@@ -130,7 +127,7 @@ std::string expectation(const Solved& solved, std::size_t now, std::size_t next,
                more = times_more(solved.settings, now, next);
   const auto times = [&](std::size_t n) { return static_cast<std::size_t>(more * static_cast<double>(n)); };
   const std::size_t patches = times(solved.patches.patch_count());
-  const std::size_t memory = (has_matrix(solved.settings) ? form_factor_bytes(patches) : 0) +
+  const std::size_t memory = (has_matrix(solved.settings.solve.method) ? form_factor_bytes(patches) : 0) +
                              predicted_memory({solved.repairs.input_triangles, times(solved.repairs.triangles),
                                                times(solved.repairs.triangles), patches,
                                                times(solved.lightmap.position.size()), times(solved.solution.links)});

@@ -49,7 +49,7 @@ PreparedToSolve prepare_reference(const Scene& scene, std::uint64_t seed, Observ
 
 /// How much light straight from sun and luminaires changes within each patch, between its corners and its middle; empty
 /// where that would take long.
-std::vector<double> change_within(const Problem& problem, std::uint64_t seed) {
+std::vector<double> change_of_delta_light(const Problem& problem, std::uint64_t seed) {
   constexpr std::size_t kMostPairs = 2'000'000;
   const PatchSet& patches = problem.patches;
   const std::size_t lights = problem.lights.luminaires.size() + problem.lights.suns.size();
@@ -78,7 +78,7 @@ SweepReference::SweepReference(const Scene& scene, std::uint64_t seed, Observer&
                                std::chrono::steady_clock::time_point end)
     : seed_(seed), prepared_(prepare_reference(scene, seed, observer, end)) {
   const PatchSet& patches = prepared_.scene.patches;
-  const PointsByRoom by_room(patches, change_within(prepared_.scene.problem(), seed));
+  const PointsByRoom by_room(patches, change_of_delta_light(prepared_.scene.problem(), seed));
   if (!(by_room.total() > 0)) throw InputError(scene.file + ": no surface that light can reach has an area.");
   for (std::size_t k = 0; k < by_room.areas().size(); ++k)
     rooms_.push_back({patches.rooms.empty() ? "all surfaces" : patches.rooms[k], by_room.areas()[k],

@@ -11,6 +11,9 @@ enum class Accuracy { draft, standard, fine };
 /// inside of them, told by rays. bf: by the flux at stake on a link, rho_p F_pq B_q A_p, as the classic method has it.
 enum class Oracle { error, bf };
 
+/// Whether the method makes the matrix of all form factors.
+constexpr bool has_matrix(Method m) { return m == Method::gauss_seidel || m == Method::jacobi; }
+
 /// In the order of the enumerators.
 inline constexpr std::string_view kMethodNames[] = {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"};
 inline constexpr std::string_view kAccuracyNames[] = {"draft", "standard", "fine"};

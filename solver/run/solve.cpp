@@ -62,7 +62,7 @@ FormFactorOptions matrix_options(const PatchSet& patches, const SolveOptions& op
 
 /// Before anything is computed: what cannot be is no news to wait for.
 void require_possible(const Problem& problem, const SolveOptions& options) {
-  const bool by_matrix = options.method == Method::gauss_seidel || options.method == Method::jacobi;
+  const bool by_matrix = has_matrix(options.method);
   const bool by_bf = options.method == Method::hierarchical && options.oracle == Oracle::bf;
   if (by_matrix) require_matrix_fits(problem.patches.patch_count(), matrix_options(problem.patches, options));
   if ((by_matrix || by_bf) && problem.rays.has_mirrors())
@@ -78,21 +78,16 @@ ShortestEdge shortest_edges(const PatchSet& patches, double longest_edge, const 
   if (patches.rooms.empty()) return edges;
   std::vector<double> area(patches.rooms.size());
   for (std::size_t i = 0; i < patches.patch_count(); ++i) area[patches.room[i]] += patches.area[i];
-  const auto alone = [&](std::size_t room, const Effort& level, int tighten) {
-    return level.shortest_edge * std::pow(kTighterEdge, tighten) *
-           longest_edge_for(level.triangles_to_halve, 2 * area[room]);
+  const auto in_room = [&](std::size_t room, const Effort& level, int tighten, double longest) {
+    const double alone = std::pow(kTighterEdge, tighten) * longest_edge_for(level.triangles_to_halve, 2 * area[room]);
+    return level.shortest_edge * std::min(longest, alone);
   };
-  for (std::size_t k = 0; k < area.size(); ++k)
-    edges.in_room.push_back(std::min(edges.anywhere, alone(k, e, options.tighten)));
+  for (std::size_t k = 0; k < area.size(); ++k) edges.in_room.push_back(in_room(k, e, options.tighten, longest_edge));
   for (const RoomLevel& good : options.good_rooms) {
     const auto k = static_cast<std::size_t>(std::ranges::find(patches.rooms, good.room) - patches.rooms.begin());
     if (k == area.size()) continue;
-    const Effort then = effort(good.accuracy, good.tighten);
-    // The longest edge falls with the triangles that all of the model is to have.
-    const double anywhere = then.shortest_edge * longest_edge *
-                            std::sqrt(e.triangles_to_halve / then.triangles_to_halve) *
-                            std::pow(kTighterEdge, good.tighten - options.tighten);
-    edges.in_room[k] = std::max(edges.in_room[k], std::min(anywhere, alone(k, then, good.tighten)));
+    edges.in_room[k] =
+        std::max(edges.in_room[k], in_room(k, effort(good.accuracy, good.tighten), good.tighten, good.longest_edge));
   }
   return edges;
 }

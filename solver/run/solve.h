@@ -24,6 +24,7 @@ struct RoomLevel {
   std::string room;  ///< PatchSet::rooms
   Accuracy accuracy;
   int tighten;
+  double longest_edge;  ///< of the mesh then [m]
 };
 
 struct SolveOptions {

@@ -21,6 +21,23 @@ namespace clerestory {
 namespace {
 
 /// A box of 4 x 3 x 2.5 m, seen from inside, that glows all over: E = M / (1 - rho) everywhere.
+/// A box of the first material: its faces look inwards, or outwards as those of a solid.
+void add_box(Scene& scene, const Vec3& lower, const Vec3& upper, SurfaceId surface, bool inwards) {
+  const auto first = static_cast<std::uint32_t>(scene.polygons.vertices.size());
+  for (int c = 0; c < 8; ++c)
+    scene.polygons.add_vertex({c & 1 ? upper.x : lower.x, c & 2 ? upper.y : lower.y, c & 4 ? upper.z : lower.z});
+  for (auto face : {std::array{0u, 1u, 3u, 2u},
+                    {4u, 6u, 7u, 5u},
+                    {0u, 4u, 5u, 1u},
+                    {2u, 3u, 7u, 6u},
+                    {0u, 2u, 6u, 4u},
+                    {1u, 5u, 7u, 3u}}) {
+    if (!inwards) std::ranges::reverse(face);
+    for (const std::uint32_t corner : face) scene.polygons.add_corner(first + corner);
+    scene.polygons.end_face(MaterialId{std::size_t{0}}, surface);
+  }
+}
+
 Scene glowing_box(double rho = 0.5) {
   Scene scene;
   scene.file = "box";
@@ -30,12 +47,7 @@ Scene glowing_box(double rho = 0.5) {
   wall.reflectance = Spectrum(rho);
   wall.exitance = Spectrum(10.0);
   wall.sides = 1;
-  for (int c = 0; c < 8; ++c) scene.polygons.add_vertex({c & 1 ? 4.0 : 0.0, c & 2 ? 3.0 : 0.0, c & 4 ? 2.5 : 0.0});
-  for (const auto& face :
-       {std::array{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
-    for (const int corner : face) scene.polygons.add_corner(static_cast<std::uint32_t>(corner));
-    scene.polygons.end_face(MaterialId{std::size_t{0}}, SurfaceId{std::size_t{0}});
-  }
+  add_box(scene, {0, 0, 0}, {4, 3, 2.5}, SurfaceId{std::size_t{0}}, true);
   scene.sensors = {{.name = "desk", .points = {{{1, 1.5, 0.8}, {0, 0, 1}}}}};
   return scene;
 }
@@ -219,16 +231,7 @@ TEST(SolveScene, ResolvesRoomsThatWereGoodEnoughNoBetterThanThen) {
   // Two rooms alike, 6 m apart, each with its lamp.
   Scene scene = box_with_lamp(0.3);
   scene.surfaces.push_back("other");
-  for (int c = 0; c < 8; ++c) scene.polygons.add_vertex({c & 1 ? 10.0 : 6.0, c & 2 ? 3.0 : 0.0, c & 4 ? 2.5 : 0.0});
-  for (const auto& face : {std::array{8, 9, 11, 10},
-                           {12, 14, 15, 13},
-                           {8, 12, 13, 9},
-                           {10, 11, 15, 14},
-                           {8, 10, 14, 12},
-                           {9, 13, 15, 11}}) {
-    for (const int corner : face) scene.polygons.add_corner(static_cast<std::uint32_t>(corner));
-    scene.polygons.end_face(MaterialId{std::size_t{0}}, SurfaceId{std::size_t{1}});
-  }
+  add_box(scene, {6, 0, 0}, {10, 3, 2.5}, SurfaceId{std::size_t{1}}, true);
   scene.lights.luminaires.push_back({"lamp", {7.7, 0.3, 1.1}, {}, PointLuminaire{Spectrum(10.0)}});
   const auto elements = [&](const Settings& settings) {
     const Solved s = solve_scene(scene, settings);
@@ -240,7 +243,7 @@ TEST(SolveScene, ResolvesRoomsThatWereGoodEnoughNoBetterThanThen) {
   const auto [fine, rooms] = elements(settings);
   ASSERT_EQ(rooms.size(), 2u);
   EXPECT_NEAR(static_cast<double>(fine[0]) / static_cast<double>(fine[1]), 1, 0.2);
-  settings.solve.good_rooms = {{rooms[1], Accuracy::draft, 0}};
+  settings.solve.good_rooms = {{rooms[1], Accuracy::draft, 0, 1.0}};
   const auto kept = elements(settings).first;
   EXPECT_NEAR(static_cast<double>(kept[0]) / static_cast<double>(fine[0]), 1, 0.1);
   EXPECT_LT(static_cast<double>(kept[1]), 0.7 * static_cast<double>(fine[1]));
@@ -358,16 +361,7 @@ TEST(WarnAboutResult, SaysWhenTheErrorOfTheSensorsIsLargeOrNotKnown) {
 Scene room_with_table(double bottom) {
   Scene scene = box_with_lamp(1.5);
   scene.surfaces.push_back("table");
-  for (int c = 0; c < 8; ++c) scene.polygons.add_vertex({c & 1 ? 3.0 : 2.0, c & 2 ? 2.0 : 1.0, c & 4 ? 0.75 : bottom});
-  for (const auto& face : {std::array{8, 10, 11, 9},
-                           {12, 13, 15, 14},
-                           {8, 9, 13, 12},
-                           {10, 14, 15, 11},
-                           {8, 12, 14, 10},
-                           {9, 11, 15, 13}}) {
-    for (const int corner : face) scene.polygons.add_corner(static_cast<std::uint32_t>(corner));
-    scene.polygons.end_face(MaterialId{std::size_t{0}}, SurfaceId{std::size_t{1}});
-  }
+  add_box(scene, {2, 1, bottom}, {3, 2, 0.75}, SurfaceId{std::size_t{1}}, false);
   return scene;
 }
 

@@ -126,6 +126,11 @@ Exchanges add_up_links(const PatchSet& leaves, const ElementTree& tree, const Tr
   return sums;
 }
 
+LawCheck reciprocity(std::vector<LawInRoom> rooms) {
+  const char* const why = rooms.empty() ? "no two surfaces of the model see each other" : "";
+  return {Law::reciprocity, std::move(rooms), why};
+}
+
 }  // namespace
 
 LawCheck reciprocity_of_matrix(const PatchSet& patches, const FormFactorMatrix& F, const Monitor& monitor) {
@@ -140,7 +145,7 @@ LawCheck reciprocity_of_matrix(const PatchSet& patches, const FormFactorMatrix& 
     }
     worst.see(patches.room_of(i), off, kFloatError);
   }
-  return {Law::reciprocity, worst.rooms(), {}};
+  return reciprocity(worst.rooms());
 }
 
 LawCheck reciprocity_of_links(const PatchSet& leaves, const ElementTree& tree, const Transport& transport,
@@ -164,7 +169,7 @@ LawCheck reciprocity_of_links(const PatchSet& leaves, const ElementTree& tree, c
     const double bound = kStdErrors * std_error + std::min(sums.mixed[g] + sums.mixed[h], area);
     worst.see(surfaces.room[g], std::abs(there.area - back.area) / area, bound / area);
   }
-  return {Law::reciprocity, worst.rooms(), {}};
+  return reciprocity(worst.rooms());
 }
 
 LawCheck row_sums_of_matrix(const PatchSet& patches, const FormFactorMatrix& F, const Closure& closure, int rays) {

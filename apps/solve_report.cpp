@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "io/text.h"
+#include "pipeline/scene_around.h"
 #include "pipeline/wording.h"
 #include "solver/evaluate/sensor_summary.h"
 #include "solver/lights/luminaire.h"
@@ -96,12 +97,6 @@ std::string error_line(const MeasuredError& e) {
   if (e.bound) return "below " + percent(e.rms_relative) + " rms" + where;
   return percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), 95 % of points within " +
          percent(e.p95_relative) + where;
-}
-
-std::optional<double> daylight_reference(const LightSpec& lights) {
-  if (!lights.sky || !lights.suns.empty()) return {};
-  const double reference = photometric(lights.sky->horizontal_irradiance);
-  return reference > 0 ? std::optional(reference) : std::nullopt;
 }
 
 std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights) {

@@ -10,9 +10,6 @@ namespace clerestory {
 
 void fill_report(RunReport& report, const Scene& scene, const Solved& solved);
 
-/// Illuminance on open ground [lx], when daylight factors have a meaning: a sky and no sun.
-std::optional<double> daylight_reference(const LightSpec& lights);
-
 /// Luminaires by type, photometric file and group, in the order in which they first appear.
 std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights);
 

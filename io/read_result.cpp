@@ -1,9 +1,14 @@
 #include "io/read_result.h"
 
+#include <cmath>
+#include <optional>
+#include <string_view>
+
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
+#include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -11,6 +16,8 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include "io/input_file.h"
+#include "io/result_arrays.h"
+#include "io/scene_file/nearest_name.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 
@@ -31,19 +38,152 @@ std::map<std::string, WrittenArray> arrays_of(vtkFieldData* data) {
     if (!array || !array->GetName()) continue;
     WrittenArray& to = all[array->GetName()];
     to.components = array->GetNumberOfComponents();
-    to.value.reserve(static_cast<std::size_t>(array->GetNumberOfValues()));
+    const auto n = static_cast<std::size_t>(array->GetNumberOfValues());
+    if (auto* floats = vtkFloatArray::SafeDownCast(array)) {
+      to.value.assign(floats->GetPointer(0), floats->GetPointer(0) + n);
+      continue;
+    }
+    to.value.reserve(n);
     for (vtkIdType k = 0; k < array->GetNumberOfTuples(); ++k)
       for (int c = 0; c < to.components; ++c) to.value.push_back(static_cast<float>(array->GetComponent(k, c)));
   }
   return all;
 }
 
-std::map<std::string, std::vector<std::string>> texts_of(vtkFieldData* data) {
-  std::map<std::string, std::vector<std::string>> all;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-    if (auto* array = vtkStringArray::SafeDownCast(data->GetAbstractArray(i)); array && array->GetName())
-      for (vtkIdType k = 0; k < array->GetNumberOfValues(); ++k) all[array->GetName()].push_back(array->GetValue(k));
+/// Field data: what is not on points or cells.
+class Tables {
+ public:
+  Tables(vtkFieldData* data, const std::filesystem::path& file) : data_(data), file_(file) {}
+
+  std::map<std::string, std::vector<std::string>> texts() const {
+    std::map<std::string, std::vector<std::string>> all;
+    for (int i = 0; i < data_->GetNumberOfArrays(); ++i)
+      if (auto* array = vtkStringArray::SafeDownCast(data_->GetAbstractArray(i)); array && array->GetName())
+        for (vtkIdType k = 0; k < array->GetNumberOfValues(); ++k) all[array->GetName()].push_back(array->GetValue(k));
+    return all;
+  }
+  std::map<std::string, double> figures() const {
+    std::map<std::string, double> all;
+    for (int i = 0; i < data_->GetNumberOfArrays(); ++i)
+      if (vtkDataArray* array = data_->GetArray(i); array && array->GetName() && array->GetNumberOfValues() == 1)
+        all[array->GetName()] = array->GetComponent(0, 0);
+    return all;
+  }
+
+  bool has(const char* name) const { return data_->GetAbstractArray(name) != nullptr; }
+  /// n rows (any number when it is not given) of so many numbers; none where there is no such array.
+  std::vector<double> numbers(const char* name, int components, std::optional<std::size_t> n = {}) const {
+    vtkDataArray* array = data_->GetArray(name);
+    if (!array && n.value_or(0) == 0) return {};
+    if (!array || array->GetNumberOfComponents() != components ||
+        (n && static_cast<std::size_t>(array->GetNumberOfTuples()) != *n))
+      refuse(file_, text("its table '", name, "' is missing or of another size than it has to be"));
+    std::vector<double> value;
+    for (vtkIdType k = 0; k < array->GetNumberOfTuples(); ++k)
+      for (int c = 0; c < components; ++c) value.push_back(array->GetComponent(k, c));
+    for (const double x : value)
+      if (!std::isfinite(x)) refuse(file_, text("its table '", name, "' has a number that is none"));
+    return value;
+  }
+  std::vector<Vec3> positions(const char* name, std::optional<std::size_t> n = {}) const {
+    const std::vector<double> x = numbers(name, 3, n);
+    std::vector<Vec3> p;
+    for (std::size_t i = 0; i < x.size(); i += 3) p.push_back({x[i], x[i + 1], x[i + 2]});
+    return p;
+  }
+  /// Whole numbers below `limit`.
+  std::vector<std::uint32_t> indices(const char* name, std::size_t limit, std::optional<std::size_t> n = {}) const {
+    return whole(name, numbers(name, 1, n), limit);
+  }
+  /// The same of an array of cells.
+  template <class Number>
+  std::vector<std::uint32_t> whole(const char* name, const std::vector<Number>& value, std::size_t limit) const {
+    std::vector<std::uint32_t> index;
+    index.reserve(value.size());
+    for (const Number x : value) {
+      if (!(x >= 0 && x < static_cast<Number>(limit)))
+        refuse(file_, text("'", name, "' has the value ", x, ", and there are ", limit));
+      index.push_back(static_cast<std::uint32_t>(x));
+    }
+    return index;
+  }
+
+ private:
+  vtkFieldData* data_;
+  const std::filesystem::path& file_;
+};
+
+/// Missing names are empty.
+std::vector<std::string> names(const WrittenResult& result, const char* name, std::size_t n) {
+  const auto at = result.texts.find(name);
+  std::vector<std::string> all = at != result.texts.end() ? at->second : std::vector<std::string>();
+  all.resize(n);
   return all;
+}
+
+std::vector<Material> materials_of(const Tables& tables, const WrittenResult& result,
+                                   const std::filesystem::path& file) {
+  const auto at = result.texts.find(arrays::kMaterialNames);
+  if (at == result.texts.end()) refuse(file, text("has no table '", arrays::kMaterialNames, "'"));
+  const std::size_t n = at->second.size();
+  const std::vector<std::string> kinds = names(result, arrays::kMaterialKinds, n);
+  const std::vector<double> rho = tables.numbers(arrays::kMaterialReflectance, 3, n),
+                            tau = tables.numbers(arrays::kMaterialTransmittance, 3, n);
+  std::vector<Material> materials(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto kind = std::ranges::find(kMaterialKindNames, kinds[i]);
+    if (kind == std::end(kMaterialKindNames)) refuse(file, text("has a material of the unknown kind '", kinds[i], "'"));
+    materials[i].name = at->second[i];
+    materials[i].kind = static_cast<MaterialKind>(kind - std::begin(kMaterialKindNames));
+    materials[i].reflectance = {rho[3 * i], rho[3 * i + 1], rho[3 * i + 2]};
+    materials[i].transmittance = {tau[3 * i], tau[3 * i + 1], tau[3 * i + 2]};
+  }
+  return materials;
+}
+
+std::vector<MeasuredSensors> sensors_of(const Tables& tables, const WrittenResult& result) {
+  const auto at = result.texts.find(arrays::kSensorSets);
+  if (at == result.texts.end()) return {};
+  const std::size_t n = at->second.size();
+  std::vector<MeasuredSensors> sensors(n);
+  const auto kinds = tables.indices(arrays::kSensorKinds, std::size(kSensorKindNames), n);
+  const auto thresholds = tables.numbers(arrays::kSensorThresholds, 1, n);
+  for (std::size_t i = 0; i < n; ++i) {
+    sensors[i].set.name = at->second[i];
+    sensors[i].set.kind = static_cast<SensorKind>(kinds[i]);
+    if (thresholds[i] > 0) sensors[i].set.threshold = thresholds[i];
+  }
+  const auto set = tables.indices(arrays::kSensorSet, n);
+  const auto position = tables.positions(arrays::kSensorPositions, set.size()),
+             normal = tables.positions(arrays::kSensorNormals, set.size());
+  const auto lux = tables.numbers(arrays::kSensorIlluminance, 1, set.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    sensors[set[i]].set.points.push_back({position[i], normal[i]});
+    sensors[set[i]].illuminance.push_back(lux[i]);
+  }
+  return sensors;
+}
+
+SceneAround around_of(const Tables& tables, const WrittenResult& result, const std::filesystem::path& file) {
+  SceneAround around;
+  if (const auto lux = tables.numbers(arrays::kDaylightReference, 1); !lux.empty()) around.daylight_reference = lux[0];
+  const auto corners = tables.positions(arrays::kPaneCorners);
+  if (corners.size() % 3 != 0) refuse(file, text("its table '", arrays::kPaneCorners, "' is cut short"));
+  const auto material = tables.indices(arrays::kPaneMaterial, result.materials.size(), corners.size() / 3),
+             surface = tables.indices(arrays::kPaneSurface, result.surfaces.size(), corners.size() / 3);
+  for (std::size_t i = 0; i < material.size(); ++i)
+    around.panes.push_back({{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}, material[i], surface[i]});
+  if (tables.has(arrays::kSky)) {
+    around.sky.radiance.channels = result.channels();
+    around.sky.radiance.value = tables.numbers(arrays::kSky, result.channels(), SkyTable::kRows * SkyTable::kColumns);
+  }
+  around.sensors = sensors_of(tables, result);
+  const auto at = tables.positions(arrays::kLuminairePositions);
+  const auto flux = tables.numbers(arrays::kLuminaireFlux, 1, at.size());
+  const auto name = names(result, arrays::kLuminaireNames, at.size()),
+             group = names(result, arrays::kLuminaireGroups, at.size());
+  for (std::size_t i = 0; i < at.size(); ++i) around.luminaires.push_back({at[i], name[i], group[i], flux[i]});
+  return around;
 }
 
 /// VTK prints what it finds wrong unless it is told not to, and that for the whole process.
@@ -68,14 +208,28 @@ WrittenResult read_result(const std::filesystem::path& file) {
     refuse(file, "is damaged, cut short or empty");
 
   vtkPolyData* data = reader->GetOutput();
+  const Tables tables(data->GetFieldData(), file);
   WrittenResult result;
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+  result.file = short_name(file);
+  result.figures = tables.figures();
+  result.texts = tables.texts();
+  const auto format = result.figures.find(arrays::kFormat);
+  if (format == result.figures.end() || format->second != arrays::kFormatNumber)
+    refuse(file, result.texts.contains("version")
+                     ? text("was written by Clerestory ", result.texts["version"].front(),
+                            format == result.figures.end() ? ", before results held what is needed"
+                                                           : ", which writes results otherwise than this one")
+                     : text("was not written by clerestory solve"));
+
+  result.points.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
     double p[3];
-    data->GetPoint(i, p);
-    result.points.push_back({p[0], p[1], p[2]});
+    data->GetPoint(static_cast<vtkIdType>(i), p);
+    result.points[i] = {p[0], p[1], p[2]};
   }
   vtkCellArray* cells = data->GetPolys();
   if (data->GetNumberOfCells() != cells->GetNumberOfCells()) refuse(file, "has other cells than triangles");
+  result.triangles.reserve(static_cast<std::size_t>(cells->GetNumberOfCells()));
   for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i) {
     vtkIdType count = 0;
     const vtkIdType* corners = nullptr;
@@ -92,11 +246,39 @@ WrittenResult read_result(const std::filesystem::path& file) {
   }
   result.of_points = arrays_of(data->GetPointData());
   result.of_cells = arrays_of(data->GetCellData());
-  result.texts = texts_of(data->GetFieldData());
-  const auto lit = result.of_points.find("illuminance");
-  if (lit == result.of_points.end() || lit->second.value.size() != result.points.size())
-    refuse(file, "has no array 'illuminance' on its points");
+  for (const char* name : {"irradiance", "illuminance", "radiosity", "luminance"}) {
+    const auto at = result.of_points.find(name);
+    const bool coloured = name == std::string_view("irradiance") || name == std::string_view("radiosity");
+    if (at == result.of_points.end()) refuse(file, text("has no array '", name, "' on its points"));
+    if (const int n = at->second.components; n != 1 && !(coloured && n == 3))
+      refuse(file, text("its array '", name, "' has ", n, " components"));
+  }
+  for (const auto& [name, array] : result.of_points)
+    for (const float value : array.value)
+      if (!std::isfinite(value)) refuse(file, text("its array '", name, "' has a value that is no number"));
+
+  result.materials = materials_of(tables, result, file);
+  result.surfaces = result.texts[arrays::kSurfaceNames];
+  result.rooms = result.texts[arrays::kRoomNames];
+  const auto of_cells = [&](const char* name, std::size_t limit) {
+    const auto at = result.of_cells.find(name);
+    if (at == result.of_cells.end()) refuse(file, text("has no array '", name, "' on its cells"));
+    return tables.whole(name, at->second.value, limit);
+  };
+  result.material = of_cells("material", result.materials.size());
+  result.surface = of_cells("surface", result.surfaces.size());
+  if (result.of_cells.contains("room")) result.room = of_cells("room", result.rooms.size());
+  result.around = around_of(tables, result, file);
+  if (const auto& report = result.texts[arrays::kReport]; !report.empty()) result.report = report.front();
   return result;
+}
+
+const WrittenArray& array_of_points(const WrittenResult& result, const std::string& name) {
+  if (const auto at = result.of_points.find(name); at != result.of_points.end()) return at->second;
+  std::vector<std::string_view> known;
+  for (const auto& [other, array] : result.of_points) known.push_back(other);
+  const std::string near = suggestion(name, known);
+  throw InputError(text(result.file, ": there is no array '", name, "'; ", near, near.ends_with('?') ? "" : "."));
 }
 
 }  // namespace clerestory

@@ -239,10 +239,12 @@ std::vector<Figure> repeatable_figures(const RunReport& r) {
   return out;
 }
 
-void write_report(AtomicFile& file, const RunReport& report) {
+namespace {
+
+/// All but what only one run knows.
+Json repeatable_json(const RunReport& report) {
   Json json;
   for (const Figure& figure : repeatable_figures(report)) set(json, figure);
-  for (const Figure& figure : run_figures(report)) set(json, figure);
   if (!report.error) json["error"] = nullptr;  // asked for by readers even when there was no time to measure
   if (report.error) json["error"]["spaces"] = array_of(report.error_spaces);
   if (report.error && report.worst_space) json["error"]["worst"] = json_of(report.error_spaces[*report.worst_space]);
@@ -252,11 +254,25 @@ void write_report(AtomicFile& file, const RunReport& report) {
   if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
   if (!report.spaces.empty()) json["spaces"] = array_of(report.spaces);
   if (!report.not_read.empty()) json["not_read"] = array_of(report.not_read);
-  json["log"] = report.log;
   json["warnings"] = report.warnings;
   json["left_out"] = report.left_out;
-  // Names from models may hold bytes that are no UTF-8; they must not stop the report.
-  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return json;
+}
+
+/// Names from models may hold bytes that are no UTF-8; they must not stop the report.
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string repeatable_text(const RunReport& report) { return text_of(repeatable_json(report), -1); }
+
+void write_report(AtomicFile& file, const RunReport& report) {
+  Json json = repeatable_json(report);
+  for (const Figure& figure : run_figures(report)) set(json, figure);
+  json["log"] = report.log;
+  file.write(text_of(json, 2) + "\n");
 }
 
 void write_report(const std::filesystem::path& file, const RunReport& report) {

@@ -95,6 +95,9 @@ std::string stop_name(StopReason stop);
 /// The figures that are the same for every run with these settings: no times, no memory, no thread count.
 std::vector<Figure> repeatable_figures(const RunReport& report);
 
+/// The report as JSON, without what differs from run to run with these settings: times, memory, threads, the log.
+std::string repeatable_text(const RunReport& report);
+
 /// Writes the report as JSON, into a file that the caller commits or a whole one.
 void write_report(AtomicFile& file, const RunReport& report);
 void write_report(const std::filesystem::path& file, const RunReport& report);

@@ -17,6 +17,7 @@
 #include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
 
+#include "io/result_arrays.h"
 #include "io/vtp_file.h"
 #include "solver/model/units.h"
 
@@ -102,10 +103,90 @@ void add_figure(vtkFieldData* to, const Figure& figure) {
 void add_field_data(vtkPolyData* data, const PatchSet& patches, const RunReport& report) {
   vtkFieldData* to = data->GetFieldData();
   for (const Figure& figure : repeatable_figures(report)) add_figure(to, figure);
-  add_names(to, "material_names", patches.materials.size(), [&](std::size_t i) { return patches.materials[i].name; });
+  add_names(to, arrays::kMaterialNames, patches.materials.size(),
+            [&](std::size_t i) { return patches.materials[i].name; });
   if (!patches.rooms.empty())
-    add_names(to, "room_names", patches.rooms.size(), [&](std::size_t i) { return patches.rooms[i]; });
-  add_names(to, "surface_names", patches.surfaces.size(), [&](std::size_t i) { return patches.surfaces[i]; });
+    add_names(to, arrays::kRoomNames, patches.rooms.size(), [&](std::size_t i) { return patches.rooms[i]; });
+  add_names(to, arrays::kSurfaceNames, patches.surfaces.size(), [&](std::size_t i) { return patches.surfaces[i]; });
+}
+
+/// n tuples of numbers, value(i, c) each.
+template <class Value>
+void add_numbers(vtkFieldData* to, const char* name, std::size_t n, int components, const Value& value) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(id(n));
+  for (std::size_t i = 0; i < n; ++i)
+    for (int c = 0; c < components; ++c) array->SetComponent(id(i), c, value(i, c));
+  to->AddArray(array);
+}
+
+template <class Position>
+void add_positions(vtkFieldData* to, const char* name, std::size_t n, const Position& position) {
+  add_numbers(to, name, n, 3, [&](std::size_t i, int c) {
+    const Vec3 p = position(i);
+    return c == 0 ? p.x : c == 1 ? p.y : p.z;
+  });
+}
+
+void add_materials(vtkFieldData* to, const std::vector<Material>& materials) {
+  const std::size_t n = materials.size();
+  add_names(to, arrays::kMaterialKinds, n,
+            [&](std::size_t i) { return kMaterialKindNames[static_cast<std::size_t>(materials[i].kind)].data(); });
+  add_numbers(to, arrays::kMaterialReflectance, n, 3,
+              [&](std::size_t i, int c) { return materials[i].reflectance[c]; });
+  add_numbers(to, arrays::kMaterialTransmittance, n, 3,
+              [&](std::size_t i, int c) { return materials[i].transmittance[c]; });
+}
+
+void add_panes(vtkFieldData* to, const std::vector<PaneTriangle>& panes) {
+  if (panes.empty()) return;
+  add_positions(to, arrays::kPaneCorners, 3 * panes.size(), [&](std::size_t i) { return panes[i / 3].corners[i % 3]; });
+  add_indices(to, arrays::kPaneMaterial, panes.size(), [&](std::size_t i) { return panes[i].material; });
+  add_indices(to, arrays::kPaneSurface, panes.size(), [&](std::size_t i) { return panes[i].surface; });
+}
+
+void add_sensors(vtkFieldData* to, const std::vector<MeasuredSensors>& sensors) {
+  if (sensors.empty()) return;
+  std::vector<std::size_t> set_of;
+  std::vector<SensorPoint> points;
+  std::vector<double> lux;
+  for (const MeasuredSensors& s : sensors) {
+    set_of.insert(set_of.end(), s.set.points.size(), static_cast<std::size_t>(&s - sensors.data()));
+    points.insert(points.end(), s.set.points.begin(), s.set.points.end());
+    lux.insert(lux.end(), s.illuminance.begin(), s.illuminance.end());
+  }
+  const std::size_t n = sensors.size();
+  add_names(to, arrays::kSensorSets, n, [&](std::size_t i) { return sensors[i].set.name; });
+  add_indices(to, arrays::kSensorKinds, n, [&](std::size_t i) { return static_cast<int>(sensors[i].set.kind); });
+  add_numbers(to, arrays::kSensorThresholds, n, 1,
+              [&](std::size_t i, int) { return sensors[i].set.threshold.value_or(0); });
+  add_indices(to, arrays::kSensorSet, points.size(), [&](std::size_t i) { return set_of[i]; });
+  add_positions(to, arrays::kSensorPositions, points.size(), [&](std::size_t i) { return points[i].position; });
+  add_positions(to, arrays::kSensorNormals, points.size(), [&](std::size_t i) { return points[i].normal; });
+  add_numbers(to, arrays::kSensorIlluminance, points.size(), 1, [&](std::size_t i, int) { return lux[i]; });
+}
+
+void add_luminaires(vtkFieldData* to, const std::vector<ShownLuminaire>& luminaires) {
+  const std::size_t n = luminaires.size();
+  if (n == 0) return;
+  add_positions(to, arrays::kLuminairePositions, n, [&](std::size_t i) { return luminaires[i].position; });
+  add_numbers(to, arrays::kLuminaireFlux, n, 1, [&](std::size_t i, int) { return luminaires[i].luminous_flux; });
+  add_names(to, arrays::kLuminaireNames, n, [&](std::size_t i) { return luminaires[i].name; });
+  add_names(to, arrays::kLuminaireGroups, n, [&](std::size_t i) { return luminaires[i].group; });
+}
+
+void add_around(vtkFieldData* to, const PatchSet& patches, const SceneAround& around, const RunReport& report) {
+  add_indices(to, arrays::kFormat, 1, [](std::size_t) { return arrays::kFormatNumber; });
+  add_names(to, arrays::kReport, 1, [&](std::size_t) { return repeatable_text(report); });
+  add_materials(to, patches.materials);
+  add_panes(to, around.panes);
+  if (!around.sky.empty()) add_field(to, arrays::kSky, around.sky.radiance);
+  if (around.daylight_reference)
+    add_numbers(to, arrays::kDaylightReference, 1, 1, [&](std::size_t, int) { return *around.daylight_reference; });
+  add_sensors(to, around.sensors);
+  add_luminaires(to, around.luminaires);
 }
 
 void add_indices_of_patches(vtkFieldData* to, const PatchSet& patches) {
@@ -135,32 +216,33 @@ Quality quality(const std::array<Vec3, 3>& p, double area) {
 }  // namespace
 
 void write_result(AtomicFile& file, const PatchSet& patches, const VertexLightmap& lightmap, const Solution& solution,
-                  std::optional<double> daylight_reference, const RunReport& report) {
+                  const SceneAround& around, const RunReport& report) {
   vtkNew<vtkPolyData> data;
   set_points(data, lightmap.position, patches.origin);
   vtkNew<vtkCellArray> cells;
   for (const auto& c : lightmap.corners) add_triangle(cells, c[0], c[1], c[2]);
   data->SetPolys(cells);
 
-  add_light(data->GetCellData(), solution.E, solution.B, daylight_reference);
+  add_light(data->GetCellData(), solution.E, solution.B, around.daylight_reference);
   if (!solution.std_error.value.empty()) add_field(data->GetCellData(), "irradiance_std_error", solution.std_error);
   add_indices_of_patches(data->GetCellData(), patches);
   if (!patches.room.empty())
     add_indices(data->GetCellData(), "room", patches.patch_count(), [&](std::size_t i) { return patches.room[i]; });
   add_indices(data->GetCellData(), "level", patches.patch_count(),
               [&](std::size_t i) { return patches.level.empty() ? 0 : patches.level[i]; });
-  add_light(data->GetPointData(), lightmap.E, radiosity_at_points(patches, lightmap), daylight_reference);
+  add_light(data->GetPointData(), lightmap.E, radiosity_at_points(patches, lightmap), around.daylight_reference);
   if (!lightmap.std_error.value.empty()) add_field(data->GetPointData(), "irradiance_std_error", lightmap.std_error);
   add_field_data(data, patches, report);
+  add_around(data->GetFieldData(), patches, around, report);
   data->GetCellData()->SetActiveScalars("illuminance");
   data->GetPointData()->SetActiveScalars("illuminance");
   write_vtp(file, data);
 }
 
 void write_result(const std::filesystem::path& file, const PatchSet& patches, const VertexLightmap& lightmap,
-                  const Solution& solution, std::optional<double> daylight_reference, const RunReport& report) {
+                  const Solution& solution, const SceneAround& around, const RunReport& report) {
   AtomicFile whole(file);
-  write_result(whole, patches, lightmap, solution, daylight_reference, report);
+  write_result(whole, patches, lightmap, solution, around, report);
   whole.commit();
 }
 

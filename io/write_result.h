@@ -2,11 +2,11 @@
 // Solution -> .vtp for ParaView. VTK stays inside.
 
 #include <filesystem>
-#include <optional>
 
 #include "io/atomic_file.h"
 #include "io/run_report.h"
 #include "solver/model/patch_set.h"
+#include "solver/model/scene_around.h"
 #include "solver/model/solution.h"
 #include "solver/model/vertex_lightmap.h"
 
@@ -15,16 +15,16 @@ namespace clerestory {
 /// Writes the patches as one-sided triangles, oriented by vertex order, in the scene's frame: into a file that the
 /// caller commits, or a whole one.
 ///
-/// Cells and points: irradiance, radiosity [W/m2], illuminance [lx], luminance [cd/m2]; daylight_factor [%] when
-/// `daylight_reference` [lx], the illuminance on open ground, is given. Cells only: material, surface, level, area
-/// [m2], and irradiance_std_error [W/m2] when the solution has it. Field data: the report's repeatable figures and the
-/// tables material_names and surface_names. Equal solutions give equal bytes.
+/// Cells and points: irradiance, radiosity [W/m2], illuminance [lx], luminance [cd/m2]; daylight_factor [%] when there
+/// is a reference for it. Cells only: material, surface, level, area [m2], and irradiance_std_error [W/m2] when the
+/// solution has it. Field data: the report's repeatable figures and its text, the tables material_names and
+/// surface_names, and what is around the surfaces. Equal solutions give equal bytes.
 ///
 /// throws  InputError when the file cannot be written; std::runtime_error when a value is not finite.
 void write_result(AtomicFile& file, const PatchSet& patches, const VertexLightmap& lightmap, const Solution& solution,
-                  std::optional<double> daylight_reference, const RunReport& report);
+                  const SceneAround& around, const RunReport& report);
 void write_result(const std::filesystem::path& file, const PatchSet& patches, const VertexLightmap& lightmap,
-                  const Solution& solution, std::optional<double> daylight_reference, const RunReport& report);
+                  const Solution& solution, const SceneAround& around, const RunReport& report);
 
 /// Writes the patches before a solve, with quality: min_angle [deg], aspect (longest edge / its height, 1.15 when
 /// equilateral), longest_edge [m], area [m2], material, surface.

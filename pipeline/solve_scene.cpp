@@ -12,6 +12,7 @@
 #include "pipeline/repeat_to_target.h"
 #include "pipeline/require_valid.h"
 #include "pipeline/result_checks.h"
+#include "pipeline/scene_around.h"
 #include "pipeline/scene_checks.h"
 #include "solver/evaluate/sensor_planes.h"
 #include "solver/run/accuracy.h"
@@ -115,6 +116,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
           return out;
         }
         Solution& solution = solved.solution;
+        out.panes = panes_of(patches);                                                // elements have none
         if (solved.elements.patch_count() > 0) patches = std::move(solved.elements);  // the problem is about these now
         monitor.report(sensors.planes.empty() ? "error" : "sensors", 0);  // ends the last stage of the solve
         lap.add_to(seconds.gather);

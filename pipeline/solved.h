@@ -11,6 +11,7 @@
 #include "solver/model/laws.h"
 #include "solver/model/mesh_report.h"
 #include "solver/model/patch_set.h"
+#include "solver/model/scene_around.h"
 #include "solver/model/solution.h"
 #include "solver/model/stage_seconds.h"
 #include "solver/model/vertex_lightmap.h"
@@ -26,6 +27,7 @@ struct Solved {
   Field sensor_std_error;                             ///< of these; empty unless paths estimated them
   std::optional<MeasuredError> error, error_sensors;  ///< empty when not measured
   std::vector<LawCheck> laws;                         ///< empty unless asked for
+  std::vector<PaneTriangle> panes;                    ///< glass and mirrors, which no patch is of
   std::size_t buried_sensors = 0;                     ///< inside solids: their error is not part of error_sensors
   MeshReport repairs;
   LitSides lit_sides;

@@ -14,6 +14,7 @@
 #include "io/write_result.h"
 #include "io/write_sensors.h"
 #include "pipeline/lap.h"
+#include "pipeline/scene_around.h"
 #include "pipeline/solve_scene.h"
 #include "pipeline/wording.h"
 #include "solver/model/error.h"
@@ -81,7 +82,7 @@ void check_outputs(const Arguments& arguments, bool has_sensors) {
 void write_outputs(const Arguments& arguments, const Scene& scene, const Solved& solved, const RunReport& report,
                    Outputs& outputs) {
   write_result(outputs.open(arguments.output), solved.patches, solved.lightmap, solved.solution,
-               daylight_reference(scene.lights), report);
+               scene_around(scene, solved), report);
   if (solved.sensor_E.size() > 0)
     write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E,
                   solved.sensor_std_error);
@@ -125,14 +126,14 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   Lap writing;
   fill_report(report, scene, solved);
   report.settings = as_figures(solved.settings, solved.patches.channels, arguments.read);
-  Outputs outputs;
-  write_outputs(arguments, scene, solved, report, outputs);
-  writing.add_to(write);
-
   const ExitCode code = exit_code(solved);
   say_why(code, solved, console);
   if (has_sensors && solved.sensor_E.size() == 0)
     console.warn("there was no time for the sensors; " + sensors_output(arguments).string() + " is not written.");
+  report.warnings = console.warnings();  // the result holds them, too
+  Outputs outputs;
+  write_outputs(arguments, scene, solved, report, outputs);
+  writing.add_to(write);
   report.seconds.read = read, report.seconds.write = write;
   finish_report(report, arguments.common, console, outputs);
   say_summary(report, solved, console);

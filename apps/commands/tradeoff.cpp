@@ -11,6 +11,7 @@
 #include "apps/run.h"
 #include "apps/sweep.h"
 #include "io/atomic_file.h"
+#include "io/picture/encode.h"
 #include "pipeline/lap.h"
 #include "pipeline/settings.h"
 #include "pipeline/tradeoff/tradeoff_chart.h"
@@ -96,7 +97,7 @@ void write_outputs(const fs::path& folder, const Tradeoff& t, Outputs& outputs) 
 ExitCode tradeoff_command(const Arguments& arguments, Console& console) {
   const fs::path folder = arguments.folder;
   check_folder(folder);
-  require_png();
+  require_picture_files();
   Lap lap;
   RunReport report = new_report(arguments.input);
   Scene scene = read_scene(arguments.input, arguments.read);

@@ -39,10 +39,7 @@ std::string svg_of(const Chart& chart);
 
 /// As the bytes of a PNG file, white where nothing is drawn. Words are set in strokes of a 5 x 7 dot matrix.
 ///
-/// throws  InputError as require_png().
+/// throws  InputError as require_picture_files().
 std::string png_of(const Chart& chart);
-
-/// throws  InputError when what writes PNG is not installed; call it before a long computation.
-void require_png();
 
 }  // namespace clerestory

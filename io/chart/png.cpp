@@ -1,14 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "io/chart/chart.h"
 #include "io/chart/dot_matrix.h"
-#include "io/formats/decode_image.h"
-#include "io/formats/image_module.h"
-#include "io/text.h"
-#include "solver/model/error.h"
+#include "io/picture/encode.h"
 
 namespace clerestory {
 namespace {
@@ -68,25 +64,12 @@ class Pixels {
   std::vector<std::uint8_t> rgb_;
 };
 
-EncodePng* encoder() {
-  void* function = image_function(kEncodePngSymbol);
-  if (!function)
-    throw InputError(text("a PNG cannot be written: ", kDecodeImageModule,
-                          " or what it needs is not installed; install Clerestory with OpenImageIO."));
-  return reinterpret_cast<EncodePng*>(function);
-}
-
 }  // namespace
-
-void require_png() { encoder(); }
 
 std::string png_of(const Chart& chart) {
   Pixels pixels(chart.width, chart.height);
   for (const auto& shape : chart.shapes) std::visit([&](const auto& s) { pixels.draw(s); }, shape);
-  std::string bytes;
-  if (!encoder()(chart.width, chart.height, pixels.rgb().data(), &bytes, append_bytes))
-    throw std::runtime_error("OpenImageIO could not write a PNG");
-  return bytes;
+  return png_bytes(chart.width, chart.height, pixels.rgb());
 }
 
 }  // namespace clerestory

@@ -27,9 +27,14 @@ using ImageMean = void(const char* file, const void* bytes, std::size_t size, co
 /// Bytes of a PNG file of three bytes a pixel, row by row from the top. False: it cannot be made.
 using EncodePng = bool(int width, int height, const std::uint8_t* rgb, void* to, PutBytes* put);
 
+/// Bytes of an OpenEXR file of `n` floats a pixel, row by row from the top. False: it cannot be made.
+using EncodeExr = bool(int width, int height, const char* const* channels, std::size_t n, const float* value, void* to,
+                       PutBytes* put);
+
 inline constexpr const char* kDecodeImageModule = "clerestory_images.so";
 inline constexpr const char* kDecodeImageSymbol = "clerestory_decode_image";
 inline constexpr const char* kImageMeanSymbol = "clerestory_image_mean";
 inline constexpr const char* kEncodePngSymbol = "clerestory_encode_png";
+inline constexpr const char* kEncodeExrSymbol = "clerestory_encode_exr";
 
 }  // namespace clerestory

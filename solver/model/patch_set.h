@@ -18,6 +18,9 @@ namespace clerestory {
 /// Front is the side from which the corners run counter-clockwise.
 enum Side : std::uint8_t { kFront = 0, kBack = 1 };
 
+/// Name of the room that all open air is.
+inline constexpr const char* kOutdoors = "outdoors";
+
 /// A node of the binary trees that part patches. The parted edge runs from corner `edge` to the next one; part 0 keeps
 /// its start and gets the corners (start, middle, apex), part 1 its end: (middle, end, apex).
 struct SplitNode {

@@ -285,7 +285,7 @@ Rooms numbered(const PatchSet& patches, const NamedRooms& named, std::vector<std
   std::size_t nameless = 0;
   for (const std::uint32_t l : order) {
     number[l] = static_cast<std::uint32_t>(rooms.names.size());
-    rooms.names.push_back(l == air                  ? "outdoors"
+    rooms.names.push_back(l == air                  ? kOutdoors
                           : l == small              ? "smaller spaces"
                           : l < named.spaces.size() ? named.spaces[l].name
                           : l < air                 ? named.by_surface[l - named.spaces.size()].name

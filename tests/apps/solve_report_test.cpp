@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/scene_around.h"
 #include "solver/model/units.h"
 
 namespace clerestory {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "io/chart/dot_matrix.h"
+#include "io/picture/encode.h"
 
 namespace clerestory {
 namespace {
@@ -80,6 +81,19 @@ TEST(Svg, HoldsAllShapesAndNoSignsOfItsOwnInWords) {
   for (const char* words :
        {"<svg xmlns", "<line x1=\"1.0\"", "<circle cx=\"1.0\"", "#c80000", ">a &lt; b</text>", "</svg>"})
     EXPECT_NE(svg.find(words), std::string::npos) << words;
+}
+
+TEST(ExrBytes, HoldTheVeryFloats) {
+  const std::vector<float> value = {1e-7f, 20'000.5f, 0, 3, -1.5f, 1e30f};
+  std::string bytes = exr_bytes(3, 1, {"Y", "share"}, value);
+  const auto in = OIIO::ImageInput::create("exr");
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  OIIO::ImageSpec spec;
+  ASSERT_TRUE(in && in->set_ioproxy(&memory) && in->open("a.exr", spec));
+  EXPECT_EQ(spec.channelnames, (std::vector<std::string>{"Y", "share"}));
+  std::vector<float> read(value.size());
+  ASSERT_TRUE(in->read_image(0, 0, 0, 2, OIIO::TypeDesc::FLOAT, read.data()));
+  EXPECT_EQ(read, value);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A triangle with light on both of its sides, far from the origin, in a room.
-void write_sheet(const fs::path& file) {
+void write_sheet(const fs::path& file, const SceneAround& around = {}) {
   PatchSet patches;
   patches.origin = {1e6, -2e6, 50};
   patches.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}};
@@ -37,7 +37,7 @@ void write_sheet(const fs::path& file) {
   lightmap.patch_of_point = {0, 0, 0, 1, 1, 1};
   lightmap.E = Field(6, 3);
   for (std::size_t i = 0; i < 6; ++i) lightmap.E.set(i, Spectrum(1.0 + static_cast<double>(i)));
-  write_result(file, patches, lightmap, solution, {}, new_report("sheet.obj"));
+  write_result(file, patches, lightmap, solution, around, new_report("sheet.obj"));
 }
 
 TEST(ReadResult, BringsBackWhatWasWritten) {
@@ -54,7 +54,42 @@ TEST(ReadResult, BringsBackWhatWasWritten) {
   for (std::size_t i = 0; i < 6; ++i)  // 179 lm/W, and the weights of the channels sum to 1
     EXPECT_FLOAT_EQ(r.of_points.at("illuminance").value[i], 179 * (1 + static_cast<float>(i)));
   EXPECT_EQ(r.of_cells.at("room").value, (std::vector<float>{1, 0}));
-  EXPECT_EQ(r.texts.at("room_names"), (std::vector<std::string>{"outdoors", "R1"}));
+  EXPECT_EQ(r.rooms, (std::vector<std::string>{"outdoors", "R1"}));
+  EXPECT_EQ(r.room, (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_EQ(r.surfaces, std::vector<std::string>{"sheet"});
+  EXPECT_EQ(r.figures.at("residual"), 0);
+  EXPECT_NE(r.report.find("\"input\":\"sheet.obj\""), std::string::npos) << r.report;
+}
+
+TEST(ReadResult, BringsBackWhatIsAroundTheSurfaces) {
+  const TempFolder folder;
+  SceneAround around;
+  around.daylight_reference = 10'000;
+  around.panes = {{{Vec3{0, 0, 1}, Vec3{1e6, 0, 1}, Vec3{0, 1, 1.25}}, 0, 0}};
+  around.sky.radiance = Field(SkyTable::kRows * SkyTable::kColumns, 3);
+  around.sky.radiance.set(7, {0.5, 0.25, 2});
+  around.sensors = {{{"desk", {{{1, 2, 3}, {0, 0, 1}}, {{4, 5, 6}, {0, 1, 0}}}, SensorKind::vertical, 500.0}, {7, 8}},
+                    {{"floor", {{{9, 9, 9}, {0, 0, 1}}}, SensorKind::planar, {}}, {1.0 / 3}}};
+  around.luminaires = {{{1, 1, 2.5}, "spot", "ceiling", 800}, {{3, 1, 2.5}, "", "", 400}};
+  write_sheet(folder / "a.vtp", around);
+  const WrittenResult r = read_result(fs::path(folder / "a.vtp"));
+  EXPECT_EQ(r.around.daylight_reference, 10'000);
+  ASSERT_EQ(r.around.panes.size(), 1u);
+  EXPECT_EQ(r.around.panes[0].corners, around.panes[0].corners);
+  EXPECT_EQ(r.around.sky.radiance[7], (Spectrum{0.5, 0.25, 2}));
+  ASSERT_EQ(r.around.sensors.size(), 2u);
+  const MeasuredSensors& desk = r.around.sensors[0];
+  EXPECT_EQ(desk.set.name, "desk");
+  EXPECT_EQ(desk.set.kind, SensorKind::vertical);
+  EXPECT_EQ(desk.set.threshold, 500.0);
+  EXPECT_EQ(desk.set.points[1].position, (Vec3{4, 5, 6}));
+  EXPECT_EQ(desk.set.points[1].normal, (Vec3{0, 1, 0}));
+  EXPECT_EQ(desk.illuminance, (std::vector<double>{7, 8}));
+  EXPECT_FALSE(r.around.sensors[1].set.threshold);
+  EXPECT_EQ(r.around.sensors[1].illuminance, (std::vector<double>{1.0 / 3})) << "double, as written";
+  ASSERT_EQ(r.around.luminaires.size(), 2u);
+  EXPECT_EQ(r.around.luminaires[0].group, "ceiling");
+  EXPECT_EQ(r.around.luminaires[1].luminous_flux, 400);
 }
 
 std::string refused(const fs::path& file) {
@@ -82,6 +117,22 @@ TEST(ReadResult, RefusesWhatNoSolveWroteAndSaysWhy) {
   EXPECT_NE(refused(folder.write("c.vtp", whole.substr(0, whole.size() / 2))).find("c.vtp: is damaged"),
             std::string::npos);
   EXPECT_NE(refused(changed("\"illuminance\"", "\"luminosity\"")).find("no array 'illuminance'"), std::string::npos);
+  EXPECT_NE(refused(changed("\"result_format\"", "\"other\"")).find("before results held what is needed"),
+            std::string::npos);
+  EXPECT_NE(refused(changed("\"material_kinds\"", "\"other\"")).find("unknown kind"), std::string::npos);
+}
+
+TEST(ReadResult, NamesTheNearestArrayWhenOneIsNotThere) {
+  const TempFolder folder;
+  write_sheet(folder / "a.vtp");
+  const WrittenResult r = read_result(fs::path(folder / "a.vtp"));
+  EXPECT_EQ(array_of_points(r, "illuminance").value.size(), 6u);
+  try {
+    array_of_points(r, "iluminance");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("did you mean 'illuminance'?"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(WriteResult, ColoursOrientationAndDistanceSurviveTheFile) {
   const TempFolder folder;
   Sheet s(3);
   s.report.settings = {{"method", std::string("progressive")}, {"max_element", 0.25}, {"seed", 7LL}};
-  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, 1790.0, s.report);
+  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, {1790.0}, s.report);
   const ResultFile result = read_result(folder / "a.vtp");
   ASSERT_EQ(result.triangles.size(), 2u);
   EXPECT_EQ(result.points[1], (Vec3{1e6 + 3, -2e6, 50})) << "points are double";
@@ -89,7 +89,7 @@ TEST(WriteResult, ADiffuserShowsTheLightBehindItsOwnPoints) {
   s.patches.side_material[0][kBack] = s.patches.side_material[0][kFront];
   make_patches(s.patches, {true, true});
   for (std::size_t i = 3; i < 6; ++i) s.lightmap.E.set(i, Spectrum(20.0 * static_cast<double>(i)));
-  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, std::nullopt, s.report);
+  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, {}, s.report);
   const auto B = read_result(folder / "a.vtp").of_points.at("radiosity").values;
   ASSERT_EQ(B.size(), 6u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -127,7 +127,7 @@ TEST(WriteResult, EveryByteIsPlainTextAndSoEveryXmlParserReadsTheFile) {
   const TempFolder folder;
   Sheet s(3);
   s.patches.surfaces = {"B\xc3\xbcro <1> & \"2\""};
-  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, 1790.0, s.report);
+  write_result(folder / "a.vtp", s.patches, s.lightmap, s.solution, {1790.0}, s.report);
   const std::string text = read_text(folder / "a.vtp");
   EXPECT_TRUE(std::ranges::all_of(text, [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); }));
   EXPECT_EQ(text.find("AppendedData"), std::string::npos) << "ParaView of Debian 12 refuses it";

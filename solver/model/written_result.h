@@ -1,0 +1,41 @@
+#pragma once
+// A result as it stands in its file: what is made of a solution starts here.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "solver/model/material.h"
+#include "solver/model/scene_around.h"
+#include "solver/model/vec.h"
+
+namespace clerestory {
+
+/// n rows of `components` numbers each.
+struct WrittenArray {
+  int components = 1;
+  std::vector<float> value;
+};
+
+/// What write_result() wrote.
+struct WrittenResult {
+  std::string file;                                         ///< that it was read from, for messages
+  std::vector<Vec3> points;                                 ///< P, scene's frame [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles;      ///< N, points, counter-clockwise from the lit side
+  std::map<std::string, WrittenArray> of_points, of_cells;  ///< P and N rows, by name
+  std::map<std::string, std::vector<std::string>> texts;    ///< of the field data: room_names, settings.method, ...
+  std::map<std::string, double> figures;                    ///< numbers of the field data: settings.max_element, ...
+
+  std::vector<std::uint32_t> material, surface;  ///< N, of each triangle
+  std::vector<std::uint32_t> room;               ///< N; empty: not known
+  std::vector<Material> materials;               ///< no exitance: that is in the light
+  std::vector<std::string> surfaces, rooms;      ///< names
+  SceneAround around;
+  std::string report;  ///< the run's report as JSON, without times and memory
+
+  int channels() const { return of_points.at("irradiance").components; }
+};
+
+}  // namespace clerestory

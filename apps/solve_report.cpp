@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "io/text.h"
-#include "pipeline/scene_around.h"
+#include "pipeline/collect_around.h"
 #include "pipeline/wording.h"
 #include "solver/evaluate/sensor_summary.h"
 #include "solver/lights/luminaire.h"

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/collect_around.h"
 #include "pipeline/lap.h"
 #include "pipeline/panel_hints.h"
 #include "pipeline/prepare.h"
 #include "pipeline/repeat_to_target.h"
 #include "pipeline/require_valid.h"
 #include "pipeline/result_checks.h"
-#include "pipeline/scene_around.h"
 #include "pipeline/scene_checks.h"
 #include "solver/evaluate/sensor_planes.h"
 #include "solver/run/accuracy.h"

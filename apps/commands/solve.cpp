@@ -13,8 +13,8 @@
 #include "io/write_debug.h"
 #include "io/write_result.h"
 #include "io/write_sensors.h"
+#include "pipeline/collect_around.h"
 #include "pipeline/lap.h"
-#include "pipeline/scene_around.h"
 #include "pipeline/solve_scene.h"
 #include "pipeline/wording.h"
 #include "solver/model/error.h"
@@ -82,7 +82,7 @@ void check_outputs(const Arguments& arguments, bool has_sensors) {
 void write_outputs(const Arguments& arguments, const Scene& scene, const Solved& solved, const RunReport& report,
                    Outputs& outputs) {
   write_result(outputs.open(arguments.output), solved.patches, solved.lightmap, solved.solution,
-               scene_around(scene, solved), report);
+               collect_around(scene, solved), report);
   if (solved.sensor_E.size() > 0)
     write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E,
                   solved.sensor_std_error);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/scene_around.h"
+#include "pipeline/collect_around.h"
 #include "solver/model/units.h"
 
 namespace clerestory {

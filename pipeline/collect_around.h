@@ -16,6 +16,6 @@ std::optional<double> daylight_reference(const LightSpec& lights);
 /// Triangles of glass and of mirrors, before patches are parted.
 std::vector<PaneTriangle> panes_of(const PatchSet& patches);
 
-SceneAround scene_around(const Scene& scene, const Solved& solved);
+SceneAround collect_around(const Scene& scene, const Solved& solved);
 
 }  // namespace clerestory

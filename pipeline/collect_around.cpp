@@ -1,4 +1,4 @@
-#include "pipeline/scene_around.h"
+#include "pipeline/collect_around.h"
 
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sky.h"
@@ -62,7 +62,7 @@ std::vector<PaneTriangle> panes_of(const PatchSet& patches) {
   return panes;
 }
 
-SceneAround scene_around(const Scene& scene, const Solved& solved) {
+SceneAround collect_around(const Scene& scene, const Solved& solved) {
   return {daylight_reference(scene.lights), solved.panes, sky_table(scene.lights, solved.patches.channels),
           measured_sensors(scene.sensors, solved.sensor_E), shown_luminaires(scene.lights.luminaires)};
 }

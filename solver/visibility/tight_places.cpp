@@ -122,7 +122,7 @@ TightPlaces::TightPlaces(const PatchSet& patches, double lift) : reach_(kReach *
 
 void TightPlaces::Cells::lay(const std::vector<std::array<Vec3, 3>>& triangles, double reach) {
   constexpr double kMostCells = 1 << 24;   // bits: 2 MB, which stay near the processor
-  constexpr double kMostInARow = 1 << 12;  // where all lie in a plane or in a line
+  constexpr double kMostInARow = 1 << 10;  // where all lie in a plane: there are as many by as many
   constexpr double kMostInReach = 4;  // smaller ones tell no more: something far away may make the reach a room's size
   Box all;
   for (const auto& triangle : triangles)

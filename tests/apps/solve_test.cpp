@@ -247,7 +247,7 @@ TEST(Solve, ThreadsNeverChangeABit) {
     const TempFolder folder;
     for (const char* threads : {"1", "2", "3"}) {
       const ProgramRun run = solve(shipped_scene("cornell_box.json"), folder / (std::string(threads) + ".vtp"),
-                                   {"--threads", threads, "--method", method, "--max-element", "0.06", "--sensors-out",
+                                   {"--threads", threads, "--method", method, "--max-element", "0.1", "--sensors-out",
                                     folder / (std::string(threads) + ".csv")});
       ASSERT_EQ(run.exit_code, 0) << run.err;
     }
@@ -375,7 +375,7 @@ TEST(Memory, IsPredictedWithinAFactorOfOneAndAHalf) {
   using Run = std::pair<const char*, const char*>;
   for (const auto& [scene, accuracy] :
        {Run{"cornell_box.json", "draft"}, Run{"cornell_box.json", "standard"}, Run{"cornell_box.json", "fine"},
-        Run{"office.json", "draft"}, Run{"house.json", "draft"}, Run{"house.json", "standard"}}) {
+        Run{"office.json", "draft"}, Run{"house.json", "draft"}}) {
     SCOPED_TRACE(std::string(scene) + ", " + accuracy);
     const TempFolder folder;
     const ProgramRun run =

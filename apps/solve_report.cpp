@@ -92,7 +92,9 @@ std::string error_line(const MeasuredError& e) {
   const std::string where =
       ", measured at " + counted(e.samples, "point") +
       (worst ? "; worst in '" + quotable(worst->name, 40) + "': " + (worst->figures.bound ? "below " : "") +
-                   percent(worst->figures.rms_relative) + " rms of " + rounded(worst->mean_illuminance) + " lx"
+                   percent(worst->figures.rms_relative) +
+                   (worst->figures.bound ? "" : " (+- " + percent(worst->figures.confidence) + ")") + " rms of " +
+                   rounded(worst->mean_illuminance) + " lx"
              : "");
   if (e.bound) return "below " + percent(e.rms_relative) + " rms" + where;
   return percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), 95 % of points within " +

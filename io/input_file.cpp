@@ -14,7 +14,10 @@ std::string short_name(const std::filesystem::path& file) {
 
 void require_file(const std::filesystem::path& file, const std::string& place, const std::string& named) {
   std::error_code error;
-  if (std::filesystem::status(file, error).type() != std::filesystem::file_type::not_found) return;
+  const auto type = std::filesystem::status(file, error).type();
+  if (type == std::filesystem::file_type::directory)
+    throw InputError(text(place, " '", quotable(named), "' is a folder; name a file in it"));
+  if (type != std::filesystem::file_type::not_found) return;
   throw InputError(text(place, " '", quotable(named), "': there is no file ", clean_text(file.string()),
                         "; paths are relative to the scene file"));
 }

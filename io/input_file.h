@@ -14,7 +14,7 @@ std::string short_name(const std::filesystem::path& file);
 /// For files that another file names: which key of it names one that is not there.
 ///
 /// place   "office.json: geometry[0].file";  named  the file as it is written there.
-/// throws  InputError when there is no such file.
+/// throws  InputError when there is no such file, and when it is a folder.
 void require_file(const std::filesystem::path& file, const std::string& place, const std::string& named);
 
 /// throws  InputError when `file` is missing, not a regular file, not readable, empty or longer than max_bytes.

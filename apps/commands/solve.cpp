@@ -56,7 +56,7 @@ void say_why(ExitCode code, const Solved& solved, Console& console) {
                  " was not reached: light is missing or too much" +
                  (solved.error ? ", and the error is " + error_line(*solved.error) : "") + "; the result is written.");
   else if (!meets_target(solved))
-    console.warn("the target error of " + percent(*settings.target_error) + " was not reached" +
+    console.warn("the target error of " + percent(*settings.target_error) + " was not reached for sure" +
                  (solved.error ? ": it is " + error_line(*solved.error) : "") + "; the result is written.");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/formats/add_mesh.h"
 #include "io/input_file.h"
 #include "io/read_sensors.h"
 #include "io/scene_file/material_rules.h"
@@ -243,6 +244,8 @@ std::vector<SensorSet> sets_of(SensorEntries entries, const std::vector<NamedSpa
     }
   }
   take_sets(entries.sets.size());
+  UniqueNames names;
+  for (SensorSet& set : all) set.name = names.take(set.name);
   return all;
 }
 

@@ -36,7 +36,8 @@ SensorEntries read_sensor_entries(const Json& sensors, const std::string& file_n
                                   const std::filesystem::path& folder);
 
 /// All sets, those in spaces too: points in steps of `spacing` along the walls, in the middle of their cells, `height`
-/// above the floor below them. One set a space that has a volume and is named so.
+/// above the floor below them. One set a space that has a volume and is named so. A name that is
+/// taken gets a number: "desk", "desk 2".
 ///
 /// throws  InputError when no space matches, or no point of a grid is inside, or they are too many.
 std::vector<SensorSet> sets_of(SensorEntries entries, const std::vector<NamedSpace>& spaces);

@@ -357,6 +357,32 @@ TEST(WarnAboutResult, SaysWhenTheErrorOfTheSensorsIsLargeOrNotKnown) {
   EXPECT_TRUE(warnings().empty());
 }
 
+TEST(WarnAboutResult, NamesTheRoomsThatAreOffAndCallsABoundUselessWhereItIs) {
+  Solved solved = solve_scene(glowing_box(), draft());
+  const auto room = [](const char* name, double rms) {
+    return ErrorOfPart{name, 10, 100, {.rms_relative = rms, .samples = 64, .confidence = 0.1 * rms}};
+  };
+  solved.error = MeasuredError{{.rms_relative = 0.01, .samples = 320, .confidence = 0.001}};
+  solved.error->parts = {room("hall", 0.5),  room("bath", 0.2),  room("cellar", 0.4),
+                         room("good", 0.01), room("attic", 0.3), room("loft", 0.25)};
+  const auto warnings = [&] {
+    Listener listener;
+    warn_about_result(solved, listener);
+    return listener.warnings;
+  };
+  ASSERT_EQ(warnings().size(), 1u);
+  EXPECT_TRUE(any_says(warnings(), "in 'hall' is 50.0 % rms (+- 5.00 %)")) << warnings()[0];
+  EXPECT_TRUE(any_says(warnings(), "; so it is in 'cellar', 40.0 %, 'attic', 30.0 %, 'loft', 25.0 %, and 1 more room:"))
+      << warnings()[0];
+  EXPECT_FALSE(any_says(warnings(), "good"));
+  solved.error.emplace(MeasuredError{{.rms_relative = 0.01, .samples = 320, .confidence = 0.001}});
+  solved.error_sensors = MeasuredError{{.rms_relative = 0.8, .samples = 64, .bound = true}};
+  ASSERT_EQ(warnings().size(), 1u);
+  EXPECT_TRUE(any_says(warnings(), "how wrong the sensors are is hardly known: below 80.0 % rms")) << warnings()[0];
+  solved.error_sensors->rms_relative = 0.04;  // a bound that is worth having
+  EXPECT_TRUE(warnings().empty());
+}
+
 /// A room with a table or, from the floor up, a chest.
 Scene room_with_table(double bottom) {
   Scene scene = box_with_lamp(1.5);

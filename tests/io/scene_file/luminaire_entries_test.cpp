@@ -67,6 +67,8 @@ TEST_F(Luminaires, RefusalsNameTheEntryAndTheKey) {
   EXPECT_NE(refused(R"({ "file": "no.ies", "position": [0, 0, 3] })")
                 .find("s.json: luminaires[0].file 'no.ies': there is no file"),
             std::string::npos);
+  EXPECT_EQ(refused(R"({ "file": ".", "position": [0, 0, 3] })"),
+            "s.json: luminaires[0].file '.' is a folder; name a file in it");
   EXPECT_EQ(refused(R"({ "position": [0, 0, 3] })"),
             "s.json: luminaires[0] says neither \"file\", the name of an .ies or .ldt file, nor \"type\": \"point\"; a "
             "luminaire needs one of them");

@@ -168,6 +168,12 @@ TEST_F(SceneFile, SensorsAreGridsWithBothEndsAndFiles) {
   EXPECT_EQ(scene.sensors[1].points[0].normal, (Vec3{0, 0, 1}));
   EXPECT_EQ(scene.sensors[2].points.size(), 1u);
   EXPECT_EQ(scene.sensors[2].points[0].normal, (Vec3{0, 0, 1}));  // u x v
+  EXPECT_EQ(read_with(R"("sensors": [{"name": "desk", "origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 2},
+                                     {"name": "desk", "origin": [0,0,1], "u": [1,0,0], "v": [0,1,0], "spacing": 2}])")
+                .sensors[1]
+                .name,
+            "desk 2")
+      << "each set can be told from all others";
 }
 
 TEST_F(SceneFile, SensorsHaveTheNormalsOfTheirKind) {

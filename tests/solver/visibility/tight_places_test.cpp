@@ -43,6 +43,17 @@ TEST(TightPlaces, AreWhereAnotherSurfaceIsNearerThanTwoLifts) {
   EXPECT_FALSE(tight.contains({0.5, 0.5, 0.3 - 2.1e-5}));
 }
 
+TEST(TightPlaces, AreFoundBesideAFaceThatIsFarAway) {
+  // A face at 10,000 km makes a lift as long as a room, so that the whole of a room is tight; that must end, too.
+  const double diameter = 2e7, lift = 5e-7 * diameter;
+  const PatchSet patches = two_sheets(0.1, 0.3, diameter);
+  const TightPlaces tight(patches, lift);
+  EXPECT_TRUE(tight.any());
+  EXPECT_TRUE(tight.contains({0.5, 0.5, 0.3}));
+  EXPECT_TRUE(tight.contains({0.5, 0.5, 0.3 + 1.9 * lift}));
+  EXPECT_FALSE(tight.contains({0.5, 0.5, 0.4 + 2.1 * lift}));
+}
+
 TEST(TightPlaces, AreNotTheCornersOfRoomsAndTheFacetsOfCurves) {
   EXPECT_FALSE(TightPlaces(two_sided(test::room_of_2160_patches().build()), 1e-5).any());
   PatchBuilder tube;  // of 36 strips, each turned by 10 degrees

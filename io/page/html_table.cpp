@@ -5,6 +5,8 @@
 namespace clerestory {
 namespace {
 
+constexpr std::size_t kShort = 18;  ///< rows that stay together on paper
+
 std::string cell(const char* tag, const std::string& words, bool left) {
   return text("<", tag, left ? " class=\"words\">" : ">", xml_text(words), "</", tag, ">");
 }
@@ -19,6 +21,7 @@ HtmlTable::HtmlTable(const std::vector<std::string>& heads) {
 }
 
 void HtmlTable::add(const std::vector<std::string>& cells, const std::string& kind) {
+  ++count_;
   rows_ += kind.empty() ? "<tr>" : "<tr class=\"" + kind + "\">";
   for (std::size_t i = 0; i < cells.size(); ++i) rows_ += cell("td", cells[i], words_[i]);
   rows_ += "</tr>\n";
@@ -27,8 +30,8 @@ void HtmlTable::add(const std::vector<std::string>& cells, const std::string& ki
 std::string HtmlTable::html() const {
   std::string head;
   for (std::size_t i = 0; i < heads_.size(); ++i) head += cell("th", heads_[i], words_[i]);
-  return "<div class=\"wide\"><table>\n<thead><tr>" + head + "</tr></thead>\n<tbody>\n" + rows_ +
-         "</tbody>\n</table></div>\n";
+  return std::string("<div class=\"wide") + (count_ <= kShort ? " short" : "") + "\"><table>\n<thead><tr>" + head +
+         "</tr></thead>\n<tbody>\n" + rows_ + "</tbody>\n</table></div>\n";
 }
 
 std::string html_facts(const std::vector<std::pair<std::string, std::string>>& facts) {

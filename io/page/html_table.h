@@ -20,6 +20,7 @@ class HtmlTable {
   std::vector<std::string> heads_;
   std::vector<bool> words_;
   std::string rows_;
+  std::size_t count_ = 0;
 };
 
 /// "<dt>words</dt><dd>words</dd>" of each pair.

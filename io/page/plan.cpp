@@ -99,23 +99,42 @@ std::string lux_label(double lux) {
   return number(lux, size >= 100 ? 0 : size >= 1 ? 1 : 4);
 }
 
-std::string isolux_of(const Plan& plan, const Scale& scale) {
+/// Where the label of a line is farthest from those that are placed, its middle preferred; nothing where all is taken.
+std::optional<PlanPoint> label_place(const PlanLine& line, const std::vector<PlanPoint>& placed, const Scale& scale) {
+  constexpr double kFree = 40, kLeast = 18;  // [px]
+  constexpr std::size_t kTries[] = {8, 6, 10, 4, 12, 2, 14};
+  std::optional<PlanPoint> best;
+  double most = kLeast;
+  for (const std::size_t sixteenths : kTries) {
+    const PlanPoint& at = line[(line.size() - 1) * sixteenths / 16];
+    const PlanPoint px{scale.x(at.x), scale.y(at.y)};
+    double free = kFree;
+    for (const PlanPoint& other : placed) free = std::min(free, std::hypot(px.x - other.x, px.y - other.y));
+    if (free > most) best = px, most = free;
+  }
+  return best;
+}
+
+/// The lines, and their labels, which lie over all else.
+std::pair<std::string, std::string> isolux_of(const Plan& plan, const Scale& scale) {
   std::map<double, std::string> paths;
-  std::map<double, const Plan::Isolux*> longest;
+  std::map<double, const PlanLine*> longest;
   for (const Plan::Isolux& line : plan.isolux) {
     paths[line.lux] += path_of(line.line, scale);
-    const Plan::Isolux*& best = longest[line.lux];
-    if (!best || line.line.size() > best->line.size()) best = &line;
+    const PlanLine*& best = longest[line.lux];
+    if (!best || line.line.size() > best->size()) best = &line.line;
   }
   std::string out, words;
+  std::vector<PlanPoint> placed;
   for (const auto& [lux, path] : paths) {
     out += text("<path class=\"isolux", plan.target == lux ? " target" : "", "\" d=\"", path, "\"/>\n");
-    const PlanLine& line = longest[lux]->line;
-    const PlanPoint& at = line[line.size() / 2];
-    words += text("<text class=\"isolux\" x=\"", number(scale.x(at.x)), "\" y=\"", number(scale.y(at.y) + 4), "\">",
-                  lux_label(lux), "</text>\n");
+    const auto at = label_place(*longest[lux], placed, scale);
+    if (!at) continue;
+    placed.push_back(*at);
+    words += text("<text class=\"isolux\" x=\"", number(at->x), "\" y=\"", number(at->y + 4), "\">", lux_label(lux),
+                  "</text>\n");
   }
-  return out + words;
+  return {out, words};
 }
 
 std::string marks_of(const Plan& plan, const Scale& scale) {
@@ -145,11 +164,14 @@ std::string legend_of(const Plan& plan, const Scale& scale, std::size_t number_o
   return out;
 }
 
-/// A length of 1, 2 or 5 times a power of ten that takes up to a fourth of the plan.
-std::string scale_bar(const Scale& scale) {
-  const double most = scale.width() / 4 / scale.px;
+/// The largest of 1, 2 or 5 times a power of ten that is not above `most`.
+double round_step(double most) {
   const double power = std::pow(10, std::floor(std::log10(most)));
-  const double metres = most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+  return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+}
+
+std::string scale_bar(const Scale& scale) {
+  const double metres = round_step(scale.width() / 4 / scale.px);
   const double y = scale.height() + 14, end = kEdge + metres * scale.px;
   return text("<path class=\"scale\" d=\"M", number(kEdge), " ", number(y - 4), "V", number(y), "H", number(end), "V",
               number(y - 4), "\"/>\n<text x=\"", number(end + 6), "\" y=\"", number(y + 3), "\">",
@@ -160,7 +182,7 @@ std::string scale_bar(const Scale& scale) {
 
 std::vector<double> isolux_levels(double lowest, double highest) {
   constexpr double kSeries[] = {1, 1.5, 2, 3, 5, 7.5};
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kLeast = 3, kMost = 8;
   std::vector<double> levels;
   if (!(highest > 0) || !std::isfinite(highest)) return levels;
   lowest = std::max(lowest, highest * 1e-3);
@@ -173,6 +195,11 @@ std::vector<double> isolux_levels(double lowest, double highest) {
       return std::abs(step - 1.5) < 0.01 || std::abs(step - 3) < 0.01 || std::abs(step - 7.5) < 0.01;
     });
   if (levels.size() > kMost) levels.erase(levels.begin(), levels.end() - kMost);
+  if (levels.size() < kLeast && highest > lowest) {
+    levels.clear();
+    const double step = round_step((highest - lowest) / kLeast);
+    for (double k = std::floor(lowest / step) + 1; k * step < highest * (1 - 1e-12); ++k) levels.push_back(k * step);
+  }
   return levels;
 }
 
@@ -217,9 +244,13 @@ std::string svg_of(const Plan& plan, std::size_t number_of_plan) {
   for (const Plan::Dot& dot : plan.dots)
     out += text("<circle cx=\"", number(scale.x(dot.at.x)), "\" cy=\"", number(scale.y(dot.at.y)), "\" r=\"5\" fill=\"",
                 hex(colour_of(plan, dot.lux)), "\"/>\n");
-  out += paths_of(plan.walls, "wall", scale) + paths_of(plan.panes, "pane", scale) + isolux_of(plan, scale) +
-         marks_of(plan, scale) + "</g>\n" + legend_of(plan, scale, number_of_plan) + scale_bar(scale);
-  return out + "</svg>\n";
+  const auto [lines, labels] = isolux_of(plan, scale);
+  out += paths_of(plan.walls, "wall", scale) + paths_of(plan.panes, "pane", scale) + lines + marks_of(plan, scale) +
+         labels +
+         "</g>
+         " + legend_of(plan, scale, number_of_plan) + scale_bar(scale);
+         return out +
+         "</svg>\n";
 }
 
 }  // namespace clerestory

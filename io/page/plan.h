@@ -37,7 +37,8 @@ struct Plan {
   std::optional<double> target;  ///< its line is drawn stronger [lx]
 };
 
-/// Levels of isolux lines between two illuminances: those that standards name (20, 30, 50, 75, 100 ...), at most 8.
+/// Levels of isolux lines between two illuminances: those that standards name (20, 30, 50, 75, 100 ...), at most 8;
+/// even steps where that were less than 3.
 std::vector<double> isolux_levels(double lowest, double highest);
 
 /// The lines of a lattice, linear on triangles.

@@ -95,6 +95,7 @@ class View {
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setClearColor(0xf1f2f3);
+    byId('view-colours').style.background = `linear-gradient(to right, ${head.colours.join(', ')})`;
     this.uniforms = {
       colours: { value: colourTexture(head.colours) },
       range: { value: new Vector2(head.range[0], head.range[1]) },
@@ -194,7 +195,7 @@ class View {
     const centre = this.low.clone().add(this.high).multiplyScalar(0.5);
     const radius = Math.max(this.high.distanceTo(this.low) / 2, 1e-3);
     const half = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect));
-    const distance = (0.85 * radius) / Math.sin(half);
+    const distance = (0.95 * radius) / Math.sin(half);
     this.camera.near = radius / 500;
     this.camera.far = 20 * radius + distance;
     this.camera.updateProjectionMatrix();

@@ -13,7 +13,7 @@
 namespace clerestory {
 namespace {
 
-constexpr double kSmooth = 20;  ///< above this ratio of largest to least illuminance colours go by its logarithm
+constexpr double kSmooth = 10;  ///< above this ratio of largest to least illuminance colours go by its logarithm
 
 /// How a plane is looked at.
 struct PlanView {

@@ -50,9 +50,11 @@ std::string key_figures(const std::vector<RoomFigures>& rooms, const std::vector
     key.emplace_back("Mean, " + sets[i].name, lux_words(sets[i].mean) + " lx");
     if (i == 0) key.emplace_back("Uniformity U0, " + sets[i].name, rounded(sets[i].uniformity, 2));
   }
-  if (run.error)
-    key.emplace_back(run.error->bound ? "Measured error (rms), below" : "Measured error (rms)",
-                     percent(run.error->rms_relative));
+  if (run.worst_space) {
+    const RunReport::PartError& worst = run.error_spaces[*run.worst_space];
+    key.emplace_back("Measured error (rms), worst room",
+                     (worst.error.bound ? "below " : "") + percent(worst.error.rms_relative));
+  }
   std::string out = "<dl class=\"key\">\n";
   for (const auto& [what, value] : key)
     out += "<div><dt>" + xml_text(what) + "</dt><dd>" + xml_text(value) + "</dd></div>\n";

@@ -7,6 +7,7 @@
 #include "io/text.h"
 #include "pipeline/report/page_sections.h"
 #include "pipeline/wording.h"
+#include "solver/model/patch_set.h"
 
 namespace clerestory {
 namespace {
@@ -38,7 +39,8 @@ std::string room_section(const WrittenResult& result, const std::vector<RoomFigu
   std::ranges::stable_sort(by_area, std::greater(), [&](std::size_t i) { return rooms[i].lit.area; });
   const std::size_t shown = std::min(rooms.size(), kMostRooms);
   std::vector<std::size_t> in_order(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(shown));
-  std::ranges::sort(in_order);
+  // The outdoors last: it is there in every daylit scene, and nobody asks for it first.
+  std::ranges::sort(in_order, {}, [&](std::size_t i) { return std::pair(rooms[i].name == kOutdoors, i); });
 
   HtmlTable table({"<room, surface", "area m2", "mean lx", "min lx", "max lx"});
   std::size_t rows = 0;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "io/page/plan.h"
 #include "io/page/solution_data.h"
@@ -30,7 +31,10 @@ std::pair<double, double> range_of(const WrittenResult& r) {
   };
   const double high = at(0.99), low = at(0.02);
   // Two digits: they stand in fields that one can change.
-  const auto round_to = [](double x) { return std::stod(text(rounded(x, 2))); };
+  const auto round_to = [](double x) {
+    const double step = std::pow(10, std::floor(std::log10(x)) - 1);
+    return step >= 1 ? std::round(x / step) * step : std::round(x * std::round(1 / step)) / std::round(1 / step);
+  };
   return high > 1.05 * low ? std::pair(round_to(std::max(low, high / 1000)), round_to(high))
                            : std::pair(low / 10, high);
 }

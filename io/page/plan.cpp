@@ -35,6 +35,12 @@ std::string hex(int colour) {
   return out;
 }
 
+/// The largest of 1, 2 or 5 times a power of ten that is not above `most`.
+double round_step(double most) {
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+}
+
 /// Metres to pixels, y down.
 struct Scale {
   PlanPoint low, high;
@@ -164,12 +170,6 @@ std::string legend_of(const Plan& plan, const Scale& scale, std::size_t number_o
   return out;
 }
 
-/// The largest of 1, 2 or 5 times a power of ten that is not above `most`.
-double round_step(double most) {
-  const double power = std::pow(10, std::floor(std::log10(most)));
-  return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
-}
-
 std::string scale_bar(const Scale& scale) {
   const double metres = round_step(scale.width() / 4 / scale.px);
   const double y = scale.height() + 14, end = kEdge + metres * scale.px;
@@ -246,11 +246,8 @@ std::string svg_of(const Plan& plan, std::size_t number_of_plan) {
                 hex(colour_of(plan, dot.lux)), "\"/>\n");
   const auto [lines, labels] = isolux_of(plan, scale);
   out += paths_of(plan.walls, "wall", scale) + paths_of(plan.panes, "pane", scale) + lines + marks_of(plan, scale) +
-         labels +
-         "</g>
-         " + legend_of(plan, scale, number_of_plan) + scale_bar(scale);
-         return out +
-         "</svg>\n";
+         labels + "</g>\n" + legend_of(plan, scale, number_of_plan) + scale_bar(scale);
+  return out + "</svg>\n";
 }
 
 }  // namespace clerestory

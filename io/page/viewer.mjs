@@ -195,7 +195,7 @@ class View {
     const centre = this.low.clone().add(this.high).multiplyScalar(0.5);
     const radius = Math.max(this.high.distanceTo(this.low) / 2, 1e-3);
     const half = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect));
-    const distance = (0.95 * radius) / Math.sin(half);
+    const distance = radius / Math.sin(half);
     this.camera.near = radius / 500;
     this.camera.far = 20 * radius + distance;
     this.camera.updateProjectionMatrix();

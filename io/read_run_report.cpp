@@ -14,17 +14,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A member, or what stands for one that is missing or null.
+/// Where a member is; null where it is missing or null.
+const Json* find(const Json& json, const char* name) {
+  if (!json.is_object()) return &json.at(name);  // throws, and says what it is
+  const auto at = json.find(name);
+  return at == json.end() || at->is_null() ? nullptr : &*at;
+}
+
+/// A member, or what stands for one that is missing.
 template <class Value>
 Value get(const Json& json, const char* name, Value otherwise = {}) {
-  const auto at = json.find(name);
-  return at == json.end() || at->is_null() ? otherwise : at->get<Value>();
+  const Json* at = find(json, name);
+  return at ? at->get<Value>() : otherwise;
 }
 
 const Json& member(const Json& json, const char* name) {
   static const Json kNone = Json::object();
-  const auto at = json.find(name);
-  return at == json.end() || at->is_null() ? kNone : *at;
+  const Json* at = find(json, name);
+  return at ? *at : kNone;
 }
 
 template <class Row, class Read>

@@ -3,7 +3,9 @@
 /** Base 64 of a zlib stream -> numbers, whose bytes of equal weight lie together. */
 export async function unpack(text, Numbers) {
   if (!text) return new Numbers(0);
-  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const characters = atob(text);
+  const bytes = new Uint8Array(characters.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = characters.charCodeAt(i);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
   const size = Numbers.BYTES_PER_ELEMENT;
@@ -27,7 +29,9 @@ export function cornersOf(codes) {
 /** 0 is no light; 1 to 65535 are even steps of the logarithm from `low` to `high`. */
 export function luxOf(steps, [low, high]) {
   const ratio = Math.log(high / low) / 65534;
-  return Float32Array.from(steps, (s) => (s === 0 ? 0 : low * Math.exp((s - 1) * ratio)));
+  const lux = new Float32Array(steps.length);
+  for (let i = 0; i < steps.length; ++i) lux[i] = steps[i] === 0 ? 0 : low * Math.exp((steps[i] - 1) * ratio);
+  return lux;
 }
 
 export async function readSolution(page) {
@@ -39,8 +43,8 @@ export async function readSolution(page) {
   ]);
   const corners = cornersOf(codes);
   const lux = luxOf(steps, head.light);
-  const grey = head.channels === 1;
-  const seen = grey ? Uint8Array.from({ length: 3 * shades.length }, (_, i) => shades[Math.floor(i / 3)]) : shades;
+  const seen = head.channels === 1 ? new Uint8Array(3 * shades.length) : shades;
+  if (head.channels === 1) for (let i = 0; i < seen.length; ++i) seen[i] = shades[Math.floor(i / 3)];
 
   /** What is known of a place on a triangle. */
   const at = (triangle, p) => {

@@ -2,7 +2,7 @@
 
 import {
   BufferAttribute, BufferGeometry, ClampToEdgeWrapping, DataTexture, DoubleSide, LinearFilter, Mesh, MeshBasicMaterial,
-  NearestFilter, PerspectiveCamera, Points, PointsMaterial, Raycaster, RGBAFormat, Scene, ShaderMaterial, SphereGeometry, Vector2,
+  NearestFilter, PerspectiveCamera, Plane, Points, PointsMaterial, Raycaster, RGBAFormat, Scene, ShaderMaterial, SphereGeometry, Vector2,
   Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -64,17 +64,17 @@ function buildSurfaces(solution, uniforms) {
   return new Mesh(geometry, new ShaderMaterial({ uniforms, vertexShader: kVertex, fragmentShader: kFragment }));
 }
 
-function buildPanes(solution) {
+function buildPanes(solution, clippingPlanes) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(solution.panes, 3));
-  const material = new MeshBasicMaterial({ color: 0x4d8fcc, transparent: true, opacity: 0.25, side: DoubleSide, depthWrite: false });
+  const material = new MeshBasicMaterial({ color: 0x4d8fcc, transparent: true, opacity: 0.25, side: DoubleSide, depthWrite: false, clippingPlanes });
   return new Mesh(geometry, material);
 }
 
-function buildLuminaires(solution) {
+function buildLuminaires(solution, clippingPlanes) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(Float32Array.from(solution.head.luminaires.flat()), 3));
-  return new Points(geometry, new PointsMaterial({ color: 0xe69f00, size: 7, sizeAttenuation: false }));
+  return new Points(geometry, new PointsMaterial({ color: 0xe69f00, size: 7, sizeAttenuation: false, clippingPlanes }));
 }
 
 function colourTexture(colours) {
@@ -106,11 +106,13 @@ class View {
       cut: { value: Infinity },
     };
     this.surfaces = buildSurfaces(solution, this.uniforms);
-    this.panes = buildPanes(solution);
+    this.renderer.localClippingEnabled = true;
+    this.below = new Plane(new Vector3(0, 0, -1), 1e30);
+    this.panes = buildPanes(solution, [this.below]);
     this.mark = new Mesh(new SphereGeometry(1, 12, 8), new MeshBasicMaterial({ color: 0xd40000 }));
     this.mark.visible = false;
     this.scene = new Scene();
-    this.scene.add(this.surfaces, this.panes, this.mark, buildLuminaires(solution));
+    this.scene.add(this.surfaces, this.panes, this.mark, buildLuminaires(solution, [this.below]));
     this.camera = new PerspectiveCamera(45, 1, 0.1, 1000);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.canvas);
@@ -182,6 +184,7 @@ class View {
 
   setCut(share) {
     this.uniforms.cut.value = share >= 1 ? 1e30 : this.low.z + share * (this.high.z - this.low.z);
+    this.below.constant = this.uniforms.cut.value;
     const height = this.uniforms.cut.value + this.solution.head.centre[2];
     byId('view-cut-height').textContent = share >= 1 ? 'nothing cut' : `cut at ${height.toFixed(2)} m`;
   }
@@ -261,6 +264,7 @@ async function start() {
     const view = new View(solution);
     status.hidden = true;
     byId('view').dataset.ready = 'yes';
+    byId('view').dataset.milliseconds = Math.round(performance.now());
     window.clerestoryView = view;
   } catch (error) {
     status.hidden = false;

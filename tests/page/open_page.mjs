@@ -18,7 +18,7 @@ function valuesAt(vtp, { place, surface, room }) {
   const lux = vtp.numbers('PointData', 'illuminance');
   const ofSurface = vtp.numbers('CellData', 'surface'), surfaces = vtp.strings('surface_names');
   const ofRoom = vtp.numbers('CellData', 'room'), rooms = vtp.strings('room_names');
-  const size = Math.max(...points.map(Math.abs));
+  const size = points.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
   const minus = (a, b) => a.map((x, k) => x - b[k]);
   const dot = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
   const found = [];
@@ -38,10 +38,9 @@ function valuesAt(vtp, { place, surface, room }) {
 
 const browser = new Chromium(program);
 try {
-  const start = Date.now();
   await browser.open(pathToFileURL(page).href);
   const ready = await browser.waitFor(`document.getElementById('view')?.dataset.ready`);
-  console.log(`page: the view was there after ${((Date.now() - start) / 1000).toFixed(2)} s`);
+  console.log(`page: the view was there ${await browser.evaluate(`document.getElementById('view').dataset.milliseconds`)} ms after the page was asked for`);
   expect(ready === 'yes', 'the 3D view was not shown:', await browser.evaluate(`document.getElementById('view-status').textContent`));
   await browser.evaluate(`document.getElementById('view-canvas').scrollIntoView({ block: 'center' })`);
   const box = await browser.evaluate(`(({ left, top, width, height }) => ({ left, top, width, height }))(document.getElementById('view-canvas').getBoundingClientRect())`);

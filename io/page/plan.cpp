@@ -15,6 +15,7 @@ namespace {
 constexpr double kWidest = 620, kHighest = 520;         // of the plan itself [px]
 constexpr double kLegend = 92, kBelow = 34, kEdge = 1;  // beside and below it [px]
 constexpr int kColours = 64;
+constexpr std::size_t kMostCells = 60'000, kMostDots = 20'000;
 
 std::string number(double x, int digits = 1) {
   char out[32];
@@ -62,22 +63,27 @@ int colour_of(const Plan& plan, double lux) {
       std::lround((kColours - 1) * place_in_range(lux, plan.lowest, plan.highest, plan.by_logarithm)));
 }
 
-/// One path a colour; cells of one colour that lie side by side are one rectangle.
+/// One path a colour; cells of one colour that lie side by side are one rectangle. Of more cells than a picture shows,
+/// blocks are drawn in the colour of their middle.
 std::string cells_of(const Plan& plan, const Scale& scale) {
   const Lattice& lattice = *plan.lattice;
+  const std::size_t step = 1 + lattice.columns * lattice.rows / kMostCells;
+  const auto colour = [&](std::size_t row, std::size_t column) {
+    const std::size_t r = std::min(row + step / 2, lattice.rows - 1),
+                      c = std::min(column + step / 2, lattice.columns - 1);
+    const double lux = lattice.value[r * lattice.columns + c];
+    return std::isnan(lux) ? -1 : colour_of(plan, lux);
+  };
   std::map<int, std::string> paths;
-  for (std::size_t row = 0; row < lattice.rows; ++row) {
-    const auto colour = [&](std::size_t column) {
-      const double lux = lattice.value[row * lattice.columns + column];
-      return std::isnan(lux) ? -1 : colour_of(plan, lux);
-    };
+  for (std::size_t row = 0; row < lattice.rows; row += step)
     for (std::size_t begin = 0, end = 0; begin < lattice.columns; begin = end) {
-      for (end = begin + 1; end < lattice.columns && colour(end) == colour(begin);) ++end;
-      if (colour(begin) < 0) continue;
-      const auto n = std::to_string(end - begin);
-      paths[colour(begin)] += "M" + std::to_string(begin) + " " + std::to_string(row) + "h" + n + "v1h-" + n + "z";
+      const int here = colour(row, begin);
+      for (end = begin + step; end < lattice.columns && colour(row, end) == here;) end += step;
+      if (here < 0) continue;
+      const auto n = std::to_string(std::min(end, lattice.columns) - begin);
+      const auto m = std::to_string(std::min(row + step, lattice.rows) - row);
+      paths[here] += "M" + std::to_string(begin) + " " + std::to_string(row) + "h" + n + "v" + m + "h-" + n + "z";
     }
-  }
   const PlanPoint corner = lattice.place(-0.5, -0.5);
   std::string out = text("<g shape-rendering=\"crispEdges\" transform=\"matrix(", number(lattice.u.x * scale.px, 4),
                          " ", number(-lattice.u.y * scale.px, 4), " ", number(lattice.v.x * scale.px, 4), " ",
@@ -86,9 +92,16 @@ std::string cells_of(const Plan& plan, const Scale& scale) {
   return out + "</g>\n";
 }
 
+/// Points nearer to one another than can be seen are one.
 std::string path_of(const PlanLine& line, const Scale& scale) {
-  std::string d;
-  for (std::size_t i = 0; i < line.size(); ++i) d += (i == 0 ? "M" : "L") + scale(line[i]);
+  constexpr double kSeen = 0.3;  // [px]
+  std::string d = "M" + scale(line.front());
+  PlanPoint last = line.front();
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if (i + 1 < line.size() && std::hypot(line[i].x - last.x, line[i].y - last.y) * scale.px < kSeen) continue;
+    d += "L" + scale(line[i]);
+    last = line[i];
+  }
   return d;
 }
 
@@ -241,9 +254,11 @@ std::string svg_of(const Plan& plan, std::size_t number_of_plan) {
            "\"><rect x=\"0\" y=\"0\" width=\"", number(scale.width() + 2 * kEdge), "\" height=\"",
            number(scale.height() + 2 * kEdge), "\"/></clipPath>\n<g clip-path=\"url(#frame-", number_of_plan, ")\">\n");
   if (plan.lattice) out += cells_of(plan, scale);
-  for (const Plan::Dot& dot : plan.dots)
+  for (std::size_t i = 0; i < plan.dots.size(); i += 1 + plan.dots.size() / kMostDots) {
+    const Plan::Dot& dot = plan.dots[i];
     out += text("<circle cx=\"", number(scale.x(dot.at.x)), "\" cy=\"", number(scale.y(dot.at.y)), "\" r=\"5\" fill=\"",
                 hex(colour_of(plan, dot.lux)), "\"/>\n");
+  }
   const auto [lines, labels] = isolux_of(plan, scale);
   out += paths_of(plan.walls, "wall", scale) + paths_of(plan.panes, "pane", scale) + lines + marks_of(plan, scale) +
          labels + "</g>\n" + legend_of(plan, scale, number_of_plan) + scale_bar(scale);

@@ -13,6 +13,7 @@
 namespace clerestory {
 namespace {
 
+constexpr double kReach = 6;    ///< [m] luminaires farther off are of another storey
 constexpr double kSmooth = 10;  ///< above this ratio of largest to least illuminance colours go by its logarithm
 
 /// How a plane is looked at.
@@ -66,7 +67,8 @@ void add_isolux(Plan& plan, const std::vector<double>& lux) {
 }
 
 /// Walls, panes and luminaires as they are seen.
-void add_surroundings(Plan& plan, const WrittenResult& result, const PlanView& view, const Vec3& cut_at) {
+/// reach  how far before the plane luminaires belong to it [m]
+void add_surroundings(Plan& plan, const WrittenResult& result, const PlanView& view, const Vec3& cut_at, double reach) {
   const PlanBox frame{plan.low, plan.high};
   const auto add = [&](std::vector<PlanLine>& to, const std::vector<std::vector<Vec3>>& lines) {
     for (const auto& line : lines) {
@@ -85,11 +87,10 @@ void add_surroundings(Plan& plan, const WrittenResult& result, const PlanView& v
     panes.push_back({first, first + 1, first + 2});
   }
   add(plan.panes, section_lines(corners, panes, cut_at, view.normal));
-  constexpr double kNear = 6;  // [m] luminaires farther off are of another storey
   for (const ShownLuminaire& luminaire : result.around.luminaires) {
     const double above = dot(luminaire.position - view.origin, view.normal);
     const PlanPoint at = view(luminaire.position);
-    if (above > -0.1 && above < kNear && frame.meets({at})) plan.luminaires.push_back({at, luminaire.name});
+    if (above > -0.1 && above < reach && frame.meets({at})) plan.luminaires.push_back({at, luminaire.name});
   }
 }
 
@@ -218,7 +219,7 @@ Plan plan_of(const WrittenResult& result, const MeasuredSensors& sensors, std::o
   plan.low = box.low, plan.high = box.high;
   set_colours(plan, sensors.illuminance);
   add_isolux(plan, sensors.illuminance);
-  add_surroundings(plan, result, view, origin);
+  add_surroundings(plan, result, view, origin, kReach);
   return plan;
 }
 
@@ -227,7 +228,8 @@ std::vector<FloorPlan> floor_plans(const WrittenResult& result, std::size_t most
   std::vector<LevelFloor> floors = floors_of(result, most, result.room.empty());
   if (floors.empty()) floors = floors_of(result, most, true);
   std::vector<FloorPlan> plans;
-  for (const LevelFloor& floor : floors) {
+  for (std::size_t level = 0; level < floors.size(); ++level) {
+    const LevelFloor& floor = floors[level];
     const auto& first = result.triangles[floor.triangles.front()];
     const PlanView view = view_of(result.points[first[0]], {0, 0, 1});
     PlanBox box;
@@ -247,7 +249,8 @@ std::vector<FloorPlan> floor_plans(const WrittenResult& result, std::size_t most
     set_colours(out.plan, lux);
     add_isolux(out.plan, lux);
     const Vec3 floor_place{view.origin.x, view.origin.y, floor.height};
-    add_surroundings(out.plan, result, view, floor_place + Vec3{0, 0, kCutAbove});
+    add_surroundings(out.plan, result, view, floor_place + Vec3{0, 0, kCutAbove},
+                     level + 1 < floors.size() ? std::min(kReach, floors[level + 1].height - floor.height) : kReach);
   }
   return plans;
 }

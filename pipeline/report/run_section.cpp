@@ -67,9 +67,10 @@ std::vector<std::string> error_row(const RunReport::PartError& part) {
 std::string in_plain_words(const RunReport::Error& e, const std::string& where) {
   return text("<p>Half of all points ", where, " are within ", percent(e.median_relative),
               " of the true value, 95 % of them within ", percent(e.p95_relative),
-              ": where this page says 500 lx, the ", "model gives 500 lx give or take ",
-              rounded(500 * e.median_relative, 2), " lx for every second point and ", rounded(500 * e.p95_relative, 2),
-              " lx for nineteen of twenty. The root mean square error is ", share_words(e.rms_relative, e.bound),
+              ". Where this page says 500 lx, the ", "model truly has between ", rounded(500 * (1 - e.median_relative)),
+              " and ", rounded(500 * (1 + e.median_relative)), " lx at every second point, and between ",
+              rounded(std::max(0.0, 500 * (1 - e.p95_relative))), " and ", rounded(500 * (1 + e.p95_relative)),
+              " lx at nineteen of twenty. The root mean square error is ", share_words(e.rms_relative, e.bound),
               " of the mean", e.bound ? std::string() : " (+- " + percent(e.confidence) + ")", ", found at ",
               counted(e.samples, "random point"), ".",
               e.bound ? " It is an upper bound: the error is smaller than what so many points can tell." : "",

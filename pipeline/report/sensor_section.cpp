@@ -11,7 +11,8 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kMostPlans = 60;  ///< a page with more can hardly be opened, and not be read
+constexpr std::size_t kMostPlans = 60, kMostPlanBytes = 6'000'000;  ///< more can hardly be opened, and not be read
+constexpr std::size_t kMostSets = 300;
 constexpr std::size_t kMostFloors = 8;
 
 std::string figure_of(const Plan& plan, const std::string& caption, std::size_t& plans) {
@@ -79,7 +80,8 @@ std::string sensor_section(const WrittenResult& result, const std::vector<Sensor
   if (targets) heads.insert(heads.end(), {"target lx", "at or above"});
   if (daylit) heads.insert(heads.end(), {"DF mean", "DF median", "DF 2 % or more"});
   HtmlTable table(heads);
-  for (const SensorSummary& s : sets) {
+  for (std::size_t i = 0; i < std::min(sets.size(), kMostSets); ++i) {
+    const SensorSummary& s = sets[i];
     std::vector<std::string> row = {s.name,           grouped(s.points),   lux_words(s.mean),       lux_words(s.min),
                                     lux_words(s.max), lux_words(s.median), rounded(s.uniformity, 2)};
     if (targets && s.threshold)
@@ -92,6 +94,8 @@ std::string sensor_section(const WrittenResult& result, const std::vector<Sensor
     table.add(row);
   }
   std::string out = "<section>\n<h2 id=\"sensors\">Illuminance at sensors</h2>\n" + table.html();
+  if (sets.size() > kMostSets)
+    out += "<p class=\"soft\">" + and_more(sets.size() - kMostSets) + " sets of sensors.</p>\n";
   out += "<p class=\"soft\">U0 is the uniformity, least over mean illuminance.";
   if (daylit) out += " DF is the daylight factor, the share of the illuminance on open ground.";
   out += "</p>\n";
@@ -99,7 +103,7 @@ std::string sensor_section(const WrittenResult& result, const std::vector<Sensor
   for (const MeasuredSensors& sensors : result.around.sensors) {
     if (sensors.illuminance.empty()) continue;
     const SensorSummary& s = sets[at++];
-    if (shown == kMostPlans) continue;
+    if (shown == kMostPlans || out.size() > kMostPlanBytes) continue;
     ++shown;
     const Plan plan = plan_of(result, sensors, s.threshold ? std::optional(s.threshold->lux) : std::optional<double>());
     out += "<h3>" + xml_text(s.name) + "</h3>\n" + verdict_on(s) +

@@ -67,7 +67,8 @@ int colour_of(const Plan& plan, double lux) {
 /// blocks are drawn in the colour of their middle.
 std::string cells_of(const Plan& plan, const Scale& scale) {
   const Lattice& lattice = *plan.lattice;
-  const std::size_t step = 1 + lattice.columns * lattice.rows / kMostCells;
+  const std::size_t step =
+      1 + static_cast<std::size_t>(std::sqrt(static_cast<double>(lattice.columns * lattice.rows) / kMostCells));
   const auto colour = [&](std::size_t row, std::size_t column) {
     const std::size_t r = std::min(row + step / 2, lattice.rows - 1),
                       c = std::min(column + step / 2, lattice.columns - 1);
@@ -88,7 +89,7 @@ std::string cells_of(const Plan& plan, const Scale& scale) {
   std::string out = text("<g shape-rendering=\"crispEdges\" transform=\"matrix(", number(lattice.u.x * scale.px, 4),
                          " ", number(-lattice.u.y * scale.px, 4), " ", number(lattice.v.x * scale.px, 4), " ",
                          number(-lattice.v.y * scale.px, 4), " ", scale(corner), ")\">\n");
-  for (const auto& [colour, path] : paths) out += "<path fill=\"" + hex(colour) + "\" d=\"" + path + "\"/>\n";
+  for (const auto& [shade, path] : paths) out += "<path fill=\"" + hex(shade) + "\" d=\"" + path + "\"/>\n";
   return out + "</g>\n";
 }
 

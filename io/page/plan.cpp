@@ -63,8 +63,9 @@ int colour_of(const Plan& plan, double lux) {
       std::lround((kColours - 1) * place_in_range(lux, plan.lowest, plan.highest, plan.by_logarithm)));
 }
 
-/// One path a colour; cells of one colour that lie side by side are one rectangle. Of more cells than a picture shows,
-/// blocks are drawn in the colour of their middle.
+/// One path a colour, a little over its edges, for between two that only meet paper shows through. Cells of one colour
+/// that lie side by side are one rectangle. Of more cells than a picture shows, blocks are drawn in the colour of their
+/// middle.
 std::string cells_of(const Plan& plan, const Scale& scale) {
   const Lattice& lattice = *plan.lattice;
   const std::size_t step =
@@ -86,10 +87,11 @@ std::string cells_of(const Plan& plan, const Scale& scale) {
       paths[here] += "M" + std::to_string(begin) + " " + std::to_string(row) + "h" + n + "v" + m + "h-" + n + "z";
     }
   const PlanPoint corner = lattice.place(-0.5, -0.5);
-  std::string out = text("<g shape-rendering=\"crispEdges\" transform=\"matrix(", number(lattice.u.x * scale.px, 4),
-                         " ", number(-lattice.u.y * scale.px, 4), " ", number(lattice.v.x * scale.px, 4), " ",
+  std::string out = text("<g stroke-width=\".06\" transform=\"matrix(", number(lattice.u.x * scale.px, 4), " ",
+                         number(-lattice.u.y * scale.px, 4), " ", number(lattice.v.x * scale.px, 4), " ",
                          number(-lattice.v.y * scale.px, 4), " ", scale(corner), ")\">\n");
-  for (const auto& [shade, path] : paths) out += "<path fill=\"" + hex(shade) + "\" d=\"" + path + "\"/>\n";
+  for (const auto& [shade, path] : paths)
+    out += "<path fill=\"" + hex(shade) + "\" stroke=\"" + hex(shade) + "\" d=\"" + path + "\"/>\n";
   return out + "</g>\n";
 }
 

@@ -116,6 +116,7 @@ class View {
     this.camera = new PerspectiveCamera(45, 1, 0.1, 1000);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.listenToKeyEvents(this.canvas);
     this.controls.addEventListener('change', () => this.draw());
     this.listen();
     this.choosePart(head.parts[0]);

@@ -12,7 +12,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kMostRooms = 60, kMostSurfacesOfRoom = 12, kMostRows = 400;
+constexpr std::size_t kMostRooms = 60, kMostSurfacesOfRoom = 8, kMostRows = 400;
 
 std::vector<std::string> row_of(const std::string& name, const LitFigures& lit) {
   return {name, area_words(lit.area), lux_words(lit.mean), lux_words(lit.lowest), lux_words(lit.highest)};

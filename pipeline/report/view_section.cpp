@@ -11,7 +11,8 @@
 namespace clerestory {
 namespace {
 
-/// Colours from the least to the most of what most of the rooms have [lx]: 2 % and 99 % of their points.
+/// Colours from the least to the most of what most of the rooms have [lx]: 2 % and 99 % of their points, or to the
+/// brightest where that is not much brighter.
 std::pair<double, double> range_of(const WrittenResult& r) {
   std::vector<float> lux;
   const std::vector<float>& all = r.of_points.at("illuminance").value;
@@ -29,7 +30,8 @@ std::pair<double, double> range_of(const WrittenResult& r) {
     std::nth_element(lux.begin(), place, lux.end());
     return double{*place};
   };
-  const double high = at(0.99), low = at(0.02);
+  const double most = at(1), usual = at(0.99), low = at(0.02);
+  const double high = most < 2 * usual ? most : usual;
   // Two digits: they stand in fields that one can change.
   const auto round_to = [](double x) {
     const double step = std::pow(10, std::floor(std::log10(x)) - 1);
@@ -68,7 +70,7 @@ std::string view_section(const WrittenResult& result, const PageFiles& files) {
       "id=\"view-cut-height\"></span></label>\n"
       "<button type=\"button\" id=\"view-above\">From above</button> <button type=\"button\" "
       "id=\"view-aslant\">Aslant</button>\n</div>\n"
-      "<div class=\"stage\"><canvas id=\"view-canvas\" aria-label=\"3D view of the illuminance on "
+      "<div class=\"stage\"><canvas id=\"view-canvas\" tabindex=\"0\" aria-label=\"3D view of the illuminance on "
       "surfaces\"></canvas>\n"
       "<p id=\"view-status\">The 3D view is being made ...</p>\n"
       "<div id=\"view-legend\"><div id=\"view-colours\"></div><div id=\"view-ticks\"></div></div>\n"

@@ -2,7 +2,8 @@
 # Installs what building Clerestory needs, from the packages of Debian 12 (or a later relative), and the packages that are
 # named as arguments: libgtest-dev for the tests.
 # Packages that are there already are left alone; with all of them there, neither root nor a network is needed.
-# Then web-ifc, which reads IFC, by npm. Without Node.js or npm's registry all else is built, and .ifc is refused.
+# Then by npm web-ifc, which reads IFC, and three.js with esbuild, which the 3D view of reports is bundled of. Without Node.js or
+# npm's registry all else is built; .ifc is refused then, and reports have no 3D view.
 set -euo pipefail
 
 packages=(
@@ -42,21 +43,27 @@ install_packages() {
   }
 }
 
-# The version of web-ifc that package-lock.json pins, by npm, without scripts of its own.
-install_web_ifc() {
-  local wanted found tools=()
-  wanted=$(sed -n 's/.*"web-ifc": "\(.*\)".*/\1/p' package.json)
-  found=$(sed -n 's/^  "version": "\(.*\)".*/\1/p' node_modules/web-ifc/package.json 2>/dev/null)
-  # Node.js may be there without being Debian's, and npm may come with it.
-  command -v node >/dev/null || command -v nodejs >/dev/null || tools+=(nodejs)
-  [ "$wanted" = "$found" ] || command -v npm >/dev/null || tools+=(npm)
-  [ ${#tools[@]} -eq 0 ] || install_packages "${tools[@]}" || return 1
+# npm_install NAME OPTIONS...: the version of NAME, and of what it needs, that package-lock.json of this folder pins, by npm,
+# without scripts of their own.
+npm_install() {
+  local name=$1 wanted found
+  wanted=$(sed -n 's/.*"'"$name"'": "\([^"]*\)".*/\1/p' package.json)
+  found=$(sed -n 's/^  "version": "\(.*\)".*/\1/p' "node_modules/$name/package.json" 2>/dev/null)
   [ "$wanted" = "$found" ] && return 0
-  echo "Dependencies: installing web-ifc $wanted"
-  npm ci --omit=dev --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
+  command -v npm >/dev/null || install_packages npm || return 1
+  echo "Dependencies: installing $name $wanted"
+  npm ci "${@:2}" --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
+}
+
+# What reads IFC. Node.js runs it; that may be there without being Debian's, and npm may come with it.
+install_web_ifc() {
+  command -v node >/dev/null || command -v nodejs >/dev/null || install_packages nodejs || return 1
+  npm_install web-ifc --omit=dev
 }
 
 [ ${#missing[@]} -eq 0 ] || install_packages "${missing[@]}"
 cd "$(dirname "${BASH_SOURCE[0]}")/../io/formats/ifc"
 install_web_ifc || echo "web-ifc or Node.js could not be installed: IFC files will be refused, all else works." >&2
+cd ../../page
+npm_install three || echo "three.js could not be installed: reports will have no 3D view, all else works." >&2
 echo "Dependencies: done."

@@ -10,13 +10,17 @@ echo "== 2 of 3: building the program"
 cmake --preset release -DCLERESTORY_BUILD_TESTS=OFF
 cmake --build --preset release
 
-echo "== 3 of 3: solving a daylit office"
+echo "== 3 of 3: solving a daylit office, and what one takes home from it"
 program=build/release/bin/clerestory
 "$program" solve data/scenes/office.json -o build/office.vtp --report build/office.json
+"$program" report build/office.vtp -o build/office.html --target 300
 
 cat <<END
 
-The result is build/office.vtp. To look at it: open it in ParaView, press Apply, and colour by
+build/office.html is a page for whoever asked: figures, plans, and a 3D view to turn and to click. Open it in
+a browser; it needs no network.
+
+The result itself is build/office.vtp. To look at it: open it in ParaView, press Apply, and colour by
 "illuminance" or "daylight_factor". "Backface Representation: Cull Backface" in the properties
 lets you look into the room from outside. The illuminance at desk height is in
 build/office.sensors.csv, the figures of the run are in build/office.json.

@@ -20,6 +20,9 @@ install(TARGETS clerestory_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cl
 # What reads IFC, with the licence of web-ifc; nothing when it was not there to build with.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clerestory/ifc
   DESTINATION ${CMAKE_INSTALL_DATADIR}/clerestory OPTIONAL)
+# What pages are made with, with the licence of three.js.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clerestory/page
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/clerestory)
 
 # The doors, not what is behind them: these headers need the standard library only.
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/clerestory)

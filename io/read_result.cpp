@@ -226,6 +226,7 @@ WrittenResult read_result(const std::filesystem::path& file) {
     double p[3];
     data->GetPoint(static_cast<vtkIdType>(i), p);
     result.points[i] = {p[0], p[1], p[2]};
+    if (!is_finite(result.points[i])) refuse(file, text("point ", i, " has a coordinate that is no number"));
   }
   vtkCellArray* cells = data->GetPolys();
   if (data->GetNumberOfCells() != cells->GetNumberOfCells()) refuse(file, "has other cells than triangles");

@@ -1,0 +1,63 @@
+// clerestory report: a result as one page.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/finish_report.h"
+#include "apps/run.h"
+#include "apps/target_arguments.h"
+#include "io/atomic_file.h"
+#include "io/read_result.h"
+#include "io/read_run_report.h"
+#include "pipeline/wording.h"
+
+namespace clerestory {
+namespace {
+
+struct Arguments {
+  CommonArguments common;
+  std::string input, output;
+  std::vector<std::string> targets;
+};
+
+ExitCode report_command(const Arguments& arguments, Console& console) {
+  check_writable(arguments.output);
+  const PageFiles files = read_page_files();
+  const WrittenResult result = read_result(arguments.input);
+  const ReportTargets targets = report_targets(arguments.targets);
+  require_known_sets(targets, result);
+  RunReport report = new_report(arguments.input);
+  report.seconds.read = console.elapsed();
+
+  if (!files.why_no_viewer.empty()) console.warn("the page has no 3D view: " + files.why_no_viewer + ".");
+  const std::string page = report_page(result, run_report_of(result.report, result.file), files, targets);
+  Outputs outputs;
+  outputs.open(arguments.output).write(page);
+  finish_report(report, arguments.common, console, outputs);
+  console.commit(outputs);
+  console.say("results " + arguments.output + ", " + bytes(page.size()) + "; open it in a browser");
+  return kDone;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& program, Task& task) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *program.add_subcommand("report", "a result as one page: figures, plans, a 3D view");
+  command.add_option("SOLUTION", arguments->input, "result of clerestory solve")->type_name("FILE.vtp")->required();
+  command.add_option("-o,--output", arguments->output, "the page; it needs no other file and no network")
+      ->type_name("REPORT.html")
+      ->required();
+  require_extension(command, "--output", ".html");
+  add_target_option(command, arguments->targets);
+  add_common_options(command, arguments->common);
+  command.footer("example: clerestory report office.vtp -o office.html --target 300 --target 'desk height=500'");
+  command.callback([arguments, &task] {
+    task = [arguments] {
+      return run(arguments->common, arguments->input, {{"-o", arguments->output}},
+                 [&](Console& console) { return report_command(*arguments, console); });
+    };
+  });
+}
+
+}  // namespace clerestory

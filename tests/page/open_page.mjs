@@ -1,0 +1,91 @@
+// Opens a page as a client does, clicks into its 3D view, and holds what it says against the result:
+//   node open_page.mjs CHROMIUM PAGE.html RESULT.vtp [SCREENSHOT.png]
+
+import { pathToFileURL } from 'node:url';
+
+import { Chromium } from './chromium.mjs';
+import { Vtp } from './vtp.mjs';
+
+const [program, page, result, screenshot] = process.argv.slice(2);
+const kTolerance = 2e-3;  // illuminance is told in steps of 0.02 %, places in float of the scene's size
+
+const problems = [];
+const expect = (good, ...what) => good || problems.push(what.join(' '));
+
+/** Illuminances that the result has at a place of a surface in a room. */
+function valuesAt(vtp, { place, surface, room }) {
+  const points = vtp.numbers('Points', 'Points'), corners = vtp.numbers('Polys', 'connectivity');
+  const lux = vtp.numbers('PointData', 'illuminance');
+  const ofSurface = vtp.numbers('CellData', 'surface'), surfaces = vtp.strings('surface_names');
+  const ofRoom = vtp.numbers('CellData', 'room'), rooms = vtp.strings('room_names');
+  const size = points.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
+  const minus = (a, b) => a.map((x, k) => x - b[k]);
+  const dot = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
+  const found = [];
+  for (let t = 0; 3 * t < corners.length; ++t) {
+    if (surfaces[ofSurface[t]] !== surface || rooms[ofRoom[t]] !== room) continue;
+    const p = [0, 1, 2].map((k) => points.slice(3 * corners[3 * t + k], 3 * corners[3 * t + k] + 3));
+    const [u, v, w] = [minus(p[1], p[0]), minus(p[2], p[0]), minus(place, p[0])];
+    const [uu, uv, vv, wu, wv] = [dot(u, u), dot(u, v), dot(v, v), dot(w, u), dot(w, v)];
+    const area = uu * vv - uv * uv, s = (vv * wu - uv * wv) / area, q = (uu * wv - uv * wu) / area;
+    const off = minus(w, u.map((x, k) => s * x + q * v[k]));
+    if (Math.min(s, q, 1 - s - q) < -1e-4 || Math.sqrt(dot(off, off)) > 1e-5 * size) continue;
+    const [a, b, c] = [0, 1, 2].map((k) => lux[corners[3 * t + k]]);
+    found.push((1 - s - q) * a + s * b + q * c);
+  }
+  return found;
+}
+
+const browser = new Chromium(program);
+try {
+  await browser.open(pathToFileURL(page).href);
+  const ready = await browser.waitFor(`document.getElementById('view')?.dataset.ready`);
+  console.log(`page: the view was there ${await browser.evaluate(`document.getElementById('view').dataset.milliseconds`)} ms after the page was asked for`);
+  expect(ready === 'yes', 'the 3D view was not shown:', await browser.evaluate(`document.getElementById('view-status').textContent`));
+  await browser.evaluate(`document.getElementById('view-canvas').scrollIntoView({ block: 'center' })`);
+  const box = await browser.evaluate(`(({ left, top, width, height }) => ({ left, top, width, height }))(document.getElementById('view-canvas').getBoundingClientRect())`);
+
+  const vtp = new Vtp(result);
+  let hits = 0;
+  for (const [x, y] of [[0.5, 0.5], [0.45, 0.6], [0.55, 0.45], [0.5, 0.62], [0.6, 0.55], [0.4, 0.5], [0.01, 0.01]]) {
+    await browser.click(box.left + x * box.width, box.top + y * box.height);
+    const probe = JSON.parse(await browser.waitFor(`document.getElementById('view-probe').dataset.probe`));
+    const words = await browser.evaluate(`document.getElementById('view-probe').textContent`);
+    await browser.evaluate(`delete document.getElementById('view-probe').dataset.probe`);
+    if (!probe) {
+      expect(words.includes('no lit surface'), 'beside all surfaces it says', words);
+      continue;
+    }
+    ++hits;
+    const values = valuesAt(vtp, probe);
+    expect(values.some((lux) => Math.abs(lux - probe.lux) <= kTolerance * Math.max(lux, 0.01)),
+      `at ${probe.place} on '${probe.surface}' it says ${probe.lux} lx, and the result`, values.join(', ') || 'has no such place');
+    expect(words.includes(probe.surface) && words.includes('lx'), 'the words are', words);
+  }
+  expect(hits >= 3, 'only', hits, 'clicks hit a surface');
+
+  // What the controls do is seen in the picture.
+  const picture = () => browser.evaluate(`(clerestoryView.draw(), document.getElementById('view-canvas').toDataURL())`);
+  let before = await picture();
+  for (const [id, change] of [['view-show', `e.value = 'seen'`], ['view-show', `e.value = 'false'`], ['view-lines', 'e.checked = true'],
+    ['view-log', 'e.checked = false'], ['view-high', 'e.value = 100'], ['view-cut', 'e.value = 60']]) {
+    await browser.evaluate(`{ const e = document.getElementById('${id}'); ${change}; e.dispatchEvent(new Event('input')); }`);
+    const after = await picture();
+    expect(after !== before, `${id} (${change}) changes nothing`);
+    before = after;
+  }
+  if (screenshot) await browser.screenshot(screenshot);
+  const pdf = await browser.pdf();
+  expect(pdf.subarray(0, 5).toString() === '%PDF-' && pdf.length > 10000, 'it cannot be printed');
+  expect(await browser.evaluate(`document.getElementById('view-print').src.startsWith('data:image/png')`), 'the view is not printed');
+
+  const outside = browser.requests.filter((url) => !/^(file|data|blob|about):/.test(url));
+  expect(outside.length === 0, 'it asks the network for', outside.join(', '));
+  expect(browser.errors.length === 0, 'its scripts complain:', browser.errors.join('; '));
+} catch (error) {
+  problems.push(error.message);
+} finally {
+  await browser.close();
+}
+for (const problem of problems) console.error(`page: ${problem}`);
+process.exit(problems.length > 0 ? 1 : 0);

@@ -101,6 +101,8 @@ void add_camera_options(CLI::App& command, ViewRequest& view, bool& fits) {
   CLI::Option* section =
       add_words(command, "--section", "x=X|y=Y", "a section seen along +x or +y from that place in metres, to scale",
                 [&view](const std::string& words) { return read_section(words, view.cut); });
+  command.add_flag("--outdoors", view.outdoors,
+                   "of --fit, --plan and --section: show what is outdoors, too, where there are rooms");
   CLI::Option* fisheye = command.add_flag("--fisheye", view.fisheye,
                                           "half a sphere by --eye and --target, or --camera: equidistant, 180 degrees");
   CLI::Option* eye = command.get_option("--eye");

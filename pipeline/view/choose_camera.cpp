@@ -1,13 +1,12 @@
 #include "pipeline/view/choose_camera.h"
 
 #include <algorithm>
-#include <numbers>
+#include <cmath>
 
 #include "io/input_file.h"
 #include "io/read_cameras.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
-#include "pipeline/wording.h"
 #include "solver/model/box.h"
 #include "solver/model/error.h"
 #include "solver/model/patch_set.h"
@@ -48,19 +47,19 @@ SceneCamera camera_named(const WrittenResult& result, const std::filesystem::pat
 
 std::string extent_words(const WrittenResult& result, const Cut& cut) {
   const Box box = Box::around(result.points);
-  const char axis = "xyz"[cut.axis];
-  return text("the model's ", axis, " goes from ", rounded(box.lower[cut.axis], 4), " to ",
-              rounded(box.upper[cut.axis], 4), " m");
+  const auto to_millimetres = [](double metres) { return std::round(1000 * metres) / 1000 + 0.0; };
+  return text("the model's ", "xyz"[cut.axis], " goes from ", to_millimetres(box.lower[cut.axis]), " to ",
+              to_millimetres(box.upper[cut.axis]), " m");
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> shown_triangles(const WrittenResult& result, const ViewRequest& request) {
-  const bool looks_into_rooms = request.is_drawing() && !request.cut;
+  const bool rooms_only = request.is_drawing() && !request.outdoors && !result.room.empty();
   std::vector<std::uint32_t> all, of_rooms;
   for (std::uint32_t i = 0; i < result.triangles.size(); ++i) {
     all.push_back(i);
-    if (looks_into_rooms && !result.room.empty() && result.rooms[result.room[i]] != kOutdoors) of_rooms.push_back(i);
+    if (rooms_only && result.rooms[result.room[i]] != kOutdoors) of_rooms.push_back(i);
   }
   return of_rooms.empty() ? all : of_rooms;
 }
@@ -68,7 +67,9 @@ std::vector<std::uint32_t> shown_triangles(const WrittenResult& result, const Vi
 Camera choose_camera(const WrittenResult& result, const std::filesystem::path& file, const ViewRequest& request) {
   const int width = request.width, height = request.height;
   if (request.cut) {
-    const auto camera = camera_of_cut(*request.cut, result.points, result.triangles, width, height);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const std::uint32_t i : shown_triangles(result, request)) triangles.push_back(result.triangles[i]);
+    const auto camera = camera_of_cut(*request.cut, result.points, triangles, width, height);
     if (!camera)
       throw InputError(text(result.file, ": there is nothing ",
                             request.cut->axis == 2 ? "below the plan at z = " : "beyond the section at ",

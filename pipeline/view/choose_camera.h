@@ -8,8 +8,8 @@
 
 namespace clerestory {
 
-/// What is shown of a result, by number: all; for a view that fits, what is in rooms, so that one looks into them and
-/// not onto the roof, where anything is in rooms.
+/// What is shown of a result, by number: all; of drawings, where there are rooms, only what is in those, so that one
+/// looks into them and not onto a roof, and an automatic scale is of them.
 std::vector<std::uint32_t> shown_triangles(const WrittenResult& result, const ViewRequest& request);
 
 /// result  read from `file`; its model is looked for where it was when it was solved, then beside `file`.

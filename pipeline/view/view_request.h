@@ -17,6 +17,7 @@ struct ViewRequest {
   std::string camera;               ///< name of one in the model; else empty
   std::optional<Cut> cut;           ///< plan or section
   bool fisheye = false;             ///< by eye and target, or by the camera
+  bool outdoors = false;            ///< a drawing shows what is outdoors, too
   std::optional<double> fov;        ///< across the longer side, in (0, 180) [degrees]; default: the camera's, or 60
 
   int width = 1920, height = 1080, samples = 16;  ///< [pixel], rays a pixel

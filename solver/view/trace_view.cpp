@@ -16,6 +16,9 @@ namespace {
 constexpr int kTileSide = 16;          // [pixel]
 constexpr double kLeastWeight = 0.01;  // a way by which less would come is not followed
 constexpr int kMostTurns = 16;
+// Dim reflections are seen by one ray of four, which stands for all.
+constexpr double kDim = 0.2;
+constexpr int kOneOf = 4, kStandsForSome = -1;
 
 /// Panes that the field is seen in: mirrors, and glass where light is shown.
 std::vector<std::uint32_t> panes_that_show(const WrittenResult& result, bool is_radiance) {
@@ -93,53 +96,55 @@ class ViewScene::Tile {
     width_ = x1 - x0;
     const auto pixels = static_cast<std::size_t>(width_ * (y1 - y0));
     sum_.assign(pixels * static_cast<std::size_t>(channels_), 0), seen_.assign(pixels, 0);
-    SightPacket packet;
-    std::array<Way, 16> ways;
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x)
-        for (const auto& [u, v] : pattern_) {
-          const auto ray = ray_through(camera_, x + u, y + v);
+        for (std::size_t k = 0; k < pattern_.size(); ++k) {
+          const auto ray = ray_through(camera_, x + pattern_[k][0], y + pattern_[k][1]);
           if (!ray) continue;
-          Way& way = ways[packet.count];
-          way = {static_cast<std::uint32_t>((y - y0) * width_ + x - x0), 0, Spectrum(1.0), ray->origin, ray->direction};
-          packet.add(ray->origin, ray->direction, 0);
-          if (packet.count == 16) send(packet, ways, true);
+          Way& way = next_way();
+          way.pixel = static_cast<std::uint32_t>((y - y0) * width_ + x - x0), way.sample = static_cast<int>(k);
+          way.turns = 0, way.weight = Spectrum(1.0), way.origin = ray->origin, way.direction = ray->direction;
+          way.near = 0;
+          send_when(kLanes);
         }
-    send(packet, ways, true);
-    while (!open_.empty()) {
-      const std::vector<Way> now = std::exchange(open_, {});
-      for (const Way& way : now) {
-        ways[packet.count] = way;
-        packet.add(way.origin, way.direction, way.near);
-        if (packet.count == 16) send(packet, ways, false);
+    send_when(1);
+    // Rays that go on through panes, and those turned back, go the same way as their neighbours of the same kind.
+    while (!through_.empty() || !back_.empty())
+      for (std::vector<Way>* open : {&through_, &back_}) {
+        const std::vector<Way> now = std::exchange(*open, {});
+        for (const Way& way : now) next_way() = way, send_when(kLanes);
+        send_when(1);
       }
-      send(packet, ways, false);
-    }
     write(x0, y0, y1);
   }
 
  private:
+  static constexpr std::size_t kLanes = 16;
   struct Way {
     std::uint32_t pixel = 0;  ///< of the tile
-    int turns = 0;
+    int sample = 0, turns = 0;
     Spectrum weight{1.0};
     Vec3 origin, direction;  ///< of the surfaces' frame
     double near = 0;
   };
 
-  void send(SightPacket& packet, const std::array<Way, 16>& ways, bool alike) {
-    if (packet.count == 0) return;
+  Way& next_way() { return ways_[waiting_++]; }
+
+  void send_when(std::size_t least) {
+    if (waiting_ < least) return;
+    SightPacket packet;
+    for (std::size_t k = 0; k < waiting_; ++k) packet.add(ways_[k].origin, ways_[k].direction, ways_[k].near);
     Sights sights;
-    scene_.surfaces_.look(packet, sights, alike);
-    for (std::size_t k = 0; k < packet.count; ++k) {
+    scene_.surfaces_.look(packet, sights, true);
+    for (std::size_t k = 0; k < waiting_; ++k) {
       if (sights.triangle[k] != Sights::kNothing)
-        take_surface(ways[k], sights.triangle[k], sights.u[k], sights.v[k]);
+        take_surface(ways_[k], sights.triangle[k], sights.u[k], sights.v[k]);
       else if (sights.pane[k] != Sights::kNothing)
-        turn(ways[k], scene_.panes_[sights.pane[k]], double{sights.distance[k]});
+        turn(ways_[k], scene_.panes_[sights.pane[k]], double{sights.distance[k]});
       else
-        take_sky(ways[k]);
+        take_sky(ways_[k]);
     }
-    packet.count = 0;
+    waiting_ = 0;
   }
 
   void add(const Way& way, int channel, double value) {
@@ -174,16 +179,21 @@ class ViewScene::Tile {
     }
     // What a pane keeps, and what is not followed, is seen as dark.
     double followed = 0;
-    const auto follow = [&](const Spectrum& share, const Vec3& direction) {
+    const auto follow = [&](const Spectrum& share, const Vec3& direction, std::vector<Way>& open) {
       Way next = way;
       next.weight *= share;
-      if (!(luminous_mean(next.weight) >= kLeastWeight) || ++next.turns > kMostTurns) return;
+      const double weight = luminous_mean(next.weight);
+      if (!(weight >= kLeastWeight) || ++next.turns > kMostTurns) return;
+      followed += weight;
+      if (weight < kDim && way.sample >= 0 && pattern_.size() % kOneOf == 0) {
+        if (way.sample % kOneOf != 0) return;
+        next.weight *= kOneOf, next.sample = kStandsForSome;
+      }
       next.origin = place, next.direction = direction, next.near = lift;
-      followed += luminous_mean(next.weight);
-      open_.push_back(next);
+      open.push_back(next);
     };
-    follow(on, unit);
-    follow(turned, back);
+    follow(on, unit, through_);
+    follow(turned, back, back_);
     seen_[way.pixel] += luminous_mean(way.weight) - followed;
   }
 
@@ -207,7 +217,9 @@ class ViewScene::Tile {
   ViewImage& image_;
   int channels_, width_ = 0;
   std::vector<double> sum_, seen_;
-  std::vector<Way> open_;
+  std::array<Way, kLanes> ways_;
+  std::size_t waiting_ = 0;
+  std::vector<Way> through_, back_;
 };
 
 ViewImage ViewScene::trace(const Camera& camera, const ViewOptions& options, const Monitor& monitor) const {

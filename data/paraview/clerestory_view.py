@@ -1,12 +1,12 @@
-"""Shows a result of clerestory solve: illuminance, lines of equal illuminance, a legend; one looks through the backs of
-walls into the rooms.
+"""Shows a result of clerestory solve: illuminance, lines of equal illuminance, a legend. Where there are rooms, what is
+outdoors is left out, and one looks through the backs of walls into them.
 
 In ParaView: Macros > Import new macro, once; then open a result, press Apply, and press the macro's button.
 Without its window: pvpython clerestory_view.py RESULT.vtp PICTURE.png
 """
 import sys
 
-from paraview import simple
+from paraview import servermanager, simple
 
 SHOWN = "illuminance"
 
@@ -17,15 +17,28 @@ def levels_within(low, high, most=8):
     return [level for level in levels if low < level < high][-most:]
 
 
-def show_result(source, view):
-    """Returns what is shown of the surfaces, and the lines."""
-    source.UpdatePipeline()
-    array = source.PointData[SHOWN]
-    if array is None:
-        raise RuntimeError("there is no '%s' on the points: open a result of clerestory solve" % SHOWN)
-    low, high = array.GetRange()
+def without_outdoors(source):
+    """What is in rooms; all where there are none."""
+    data = servermanager.Fetch(source)
+    names = data.GetFieldData().GetAbstractArray("room_names")
+    names = [names.GetValue(i) for i in range(names.GetNumberOfValues())] if names else []
+    if "outdoors" not in names or len(names) < 2 or data.GetCellData().GetArray("room") is None:
+        return source
+    number = names.index("outdoors")
+    return simple.Threshold(registrationName="Rooms", Input=source, Scalars=["CELLS", "room"],
+                            LowerThreshold=number - 0.5, UpperThreshold=number + 0.5, Invert=1)
 
-    surfaces = simple.Show(source, view)
+
+def show_result(source, view):
+    source.UpdatePipeline()
+    if source.PointData[SHOWN] is None:
+        raise RuntimeError("there is no '%s' on the points: open a result of clerestory solve" % SHOWN)
+    shown = without_outdoors(source)
+    shown.UpdatePipeline()
+    low, high = shown.PointData[SHOWN].GetRange()
+
+    simple.Hide(source, view)
+    surfaces = simple.Show(shown, view)
     surfaces.SetRepresentationType("Surface")
     surfaces.BackfaceRepresentation = "Cull Backface"
     surfaces.Ambient, surfaces.Diffuse, surfaces.Specular = 1, 0, 0  # colours are those of the legend, without shading
@@ -41,15 +54,16 @@ def show_result(source, view):
     bar.Title, bar.ComponentTitle = SHOWN, "[lux]"
     bar.Visibility = 1
 
-    lines = simple.Contour(Input=source, ContourBy=["POINTS", SHOWN], Isosurfaces=levels_within(low, high))
+    lines = simple.Contour(registrationName="Isolux", Input=shown, ContourBy=["POINTS", SHOWN], Isosurfaces=levels_within(low, high))
     shown_lines = simple.Show(lines, view)
     shown_lines.ColorArrayName = ["POINTS", ""]
     shown_lines.AmbientColor = shown_lines.DiffuseColor = [0, 0, 0]
     shown_lines.Ambient, shown_lines.Diffuse = 1, 0
     shown_lines.LineWidth = 1.5
+    view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [-0.62, -0.83, 0.75], [0, 0, 0], [0, 0, 1]
+    simple.ResetCamera(view)  # so far away that all is seen
     simple.SetActiveSource(source)
     simple.Render(view)
-    return surfaces, lines
 
 
 def main():
@@ -57,7 +71,6 @@ def main():
     if len(files) == 2:
         view = simple.CreateRenderView(ViewSize=[1200, 800])
         show_result(simple.OpenDataFile(files[0]), view)
-        simple.ResetCamera(view)
         simple.SaveScreenshot(files[1], view)
         return
     source = simple.GetActiveSource()

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPixelsAtOnce = 1 << 14;
 
 /// Height of a line of words that is read easily on a picture of that height [pixel].
-double size_of_words(int height) { return std::clamp(height / 45.0, 12.0, 48.0); }
+double size_of_words(int height) { return std::clamp(height / 42.0, 13.0, 48.0); }
 
 Ink ink_of(const std::array<double, 3>& rgb) {
   const auto byte = [](double v) { return static_cast<std::uint8_t>(std::lround(255 * v)); };
@@ -148,7 +148,7 @@ Pixels with_legend(const Pixels& picture, const ValueScale& scale, const std::st
 }
 
 void draw_lines(const std::vector<LineOnPicture>& lines, const ValueScale* scale, Pixels& onto) {
-  const double size = 0.85 * size_of_words(onto.height), width = std::max(1.2, onto.height / 700.0);
+  const double size = 0.9 * size_of_words(onto.height), width = std::max(1.2, onto.height / 700.0);
   constexpr Ink kBlack{0, 0, 0};
   const auto under = [&](const LineOnPicture& line) { return scale ? false_colour(line.level, *scale) : kBlack; };
   for (const LineOnPicture& line : lines)

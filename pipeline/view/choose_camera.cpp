@@ -95,7 +95,7 @@ Camera choose_camera(const WrittenResult& result, const std::filesystem::path& f
     camera.turn(from.forward, request.up.value_or(from.up));
     if (!request.fisheye && !request.fov && from.vertical_angle)
       camera.half_width = std::tan(*from.vertical_angle / 2) * width / height;
-    if (!request.fisheye && !from.vertical_angle)
+    if (!request.fisheye && !request.fov && !from.vertical_angle)
       camera.kind = CameraKind::orthographic, camera.half_width = from.half_height * width / height;
     return camera;
   }

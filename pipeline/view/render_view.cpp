@@ -26,11 +26,11 @@ struct Quantity {
 
 Quantity quantity_of(const std::string& name) {
   const std::string base = name.substr(0, name.find(':'));
-  if (base == "illuminance" || base == "mean_illuminance") return {name, "[lux]"};
+  if (base == "illuminance" || base == "mean_illuminance") return {quotable(name, 24), "[lux]"};
   if (base == "luminance") return {name, "[cd/m2]"};
   if (base == "daylight_factor") return {name, "[%]"};
-  if (base == "irradiance" || base == "radiosity") return {name, "[W/m2]"};
-  return {name, ""};
+  if (base == "irradiance" || base == "radiosity") return {quotable(name, 24), "[W/m2]"};
+  return {quotable(name, 24), ""};
 }
 
 ShownField field_of(const WrittenResult& result, const ViewRequest& request) {
@@ -144,8 +144,8 @@ RenderedView render_view(const WrittenResult& result, const std::filesystem::pat
     scale = scale_of(image, request);
     pixels = false_colours(image, *scale);
     const Quantity quantity = quantity_of(request.show);
-    view.notes.push_back(text(quantity.name, " from ", rounded(scale->low), " to ", rounded(scale->high), " ",
-                              quantity.unit, scale->by_logarithm ? ", by logarithm" : ""));
+    view.notes.push_back(text(quantity.name, " from ", scale->low, " to ", scale->high, " ", quantity.unit,
+                              scale->by_logarithm ? ", by logarithm" : ""));
   }
   if (!request.isolux.empty())
     draw_lines(lines_on_picture(result, request, camera, request.shows_colour() ? "illuminance" : request.show, shown),

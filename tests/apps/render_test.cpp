@@ -112,10 +112,19 @@ TEST_F(Render, SaysWhatDoesNotGoTogether) {
   EXPECT_EQ(run.exit_code, 2);
 }
 
-TEST_F(Render, WarnsOfAnEyeInsideOfAWall) {
-  const ProgramRun inside = render("view.png", {"--eye", "2,1.5,-3", "--target", "2,1.5,-9"});
-  EXPECT_EQ(inside.exit_code, 0) << inside.err;
-  EXPECT_NE(inside.err.find("nothing is seen"), inside.err.npos) << inside.err;
+TEST_F(Render, SaysWhenNothingIsSeen) {
+  const ProgramRun away = render("view.png", {"--eye", "2,1.5,-3", "--target", "2,1.5,-9"});
+  EXPECT_EQ(away.exit_code, 0) << away.err;
+  EXPECT_NE(away.err.find("nothing is seen"), away.err.npos) << away.err;
+}
+
+TEST_F(Render, WritesNumbersAsEXR) {
+  const ProgramRun run = render("view.exr", {"--show", "illuminance", "--eye", "1,1,1", "--target", "3,2,1"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const std::string bytes = text_of("view.exr");
+  EXPECT_TRUE(bytes.starts_with("\x76\x2f\x31\x01"));
+  EXPECT_NE(bytes.find(std::string("A\0\2", 3)), bytes.npos) << "a channel A of floats";
+  EXPECT_NE(bytes.find(std::string("Y\0\2", 3)), bytes.npos) << "a channel Y of floats";
 }
 
 TEST_F(Render, FindsTheCamerasOfAModelThatWasSolved) {

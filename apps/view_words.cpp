@@ -11,6 +11,8 @@ namespace {
 constexpr double kMostPixels = 8192.0 * 8192;
 constexpr double kFarthest = 1e12;  // as for models [m]
 constexpr std::size_t kMostLevels = 64;
+constexpr double kMostLight = 1e15;    // as in scene files
+constexpr double kLeastSpread = 1e-9;  // of a scale, to the larger of its ends
 
 std::optional<double> finite(std::string_view word) {
   const auto value = to_number(trimmed(word));
@@ -62,8 +64,11 @@ Problem read_section(const std::string& words, std::optional<Cut>& to) {
 Problem read_range(const std::string& words, std::optional<std::pair<double, double>>& to) {
   const auto n = numbers(words, ':');
   if (!n || n->size() != 2) return quotable(words) + " is not LOW:HIGH, such as 10:1000";
-  if (!((*n)[0] < (*n)[1])) return quotable(words) + ": the first is not below the second";
-  to = {(*n)[0], (*n)[1]};
+  const double low = (*n)[0], high = (*n)[1], largest = std::max(std::abs(low), std::abs(high));
+  if (!(low < high)) return quotable(words) + ": the first is not below the second";
+  if (largest > kMostLight || high - low < kLeastSpread * largest)
+    return quotable(words) + ": no scale has room for that; ends are up to 1e15 and differ in their first nine digits";
+  to = {low, high};
   return {};
 }
 

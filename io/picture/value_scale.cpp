@@ -33,7 +33,7 @@ double quantile(std::vector<float>& values, double share) {
 std::vector<double> ticks_of(const ValueScale& scale, int most) {
   std::vector<double> inner;
   if (scale.by_logarithm) {
-    const double decades = std::log10(scale.high / scale.low);
+    const double decades = std::log10(scale.high) - std::log10(scale.low);
     const bool all_three = 3 * decades <= most;
     const int first = static_cast<int>(std::floor(std::log10(scale.low))),
               last = static_cast<int>(std::ceil(std::log10(scale.high))),

@@ -7,7 +7,7 @@
 namespace clerestory {
 
 struct ValueScale {
-  double low = 0, high = 1;  ///< low < high; 0 < low by logarithm
+  double low = 0, high = 1;  ///< low < high by 1e-9 of the larger, both within 1e15; 0 < low by logarithm
   bool by_logarithm = false;
 };
 

@@ -104,6 +104,7 @@ TEST_F(Render, SaysWhatDoesNotGoTogether) {
   EXPECT_NE(render("no.png", {}, "0x10").err.find("WIDTHxHEIGHT"), std::string::npos);
   EXPECT_NE(render("no.png", {}, "65535x65535").err.find("67 million"), std::string::npos);
   expect_refused({"--show", "illuminance", "--range", "10:5"}, 2, "not below");
+  expect_refused({"--show", "illuminance", "--range", "1:1.0000000000000002"}, 2, "no scale has room");
   expect_refused({"--show", "illuminance", "--range", "0:5", "--log-scale"}, 2, "above 0");
   expect_refused({"--range", "1:5"}, 2, "false colours");
   expect_refused({"--isolux", "1,,2"}, 2, "not numbers");

@@ -13,10 +13,13 @@ cmake --build --preset release
 echo "== 3 of 3: solving a daylit office"
 program=build/release/bin/clerestory
 "$program" solve data/scenes/office.json -o build/office.vtp --report build/office.json
+"$program" render build/office.vtp -o build/office.png --show illuminance --log-scale --isolux 100,200,300,500
 
 cat <<END
 
-The result is build/office.vtp. To look at it: open it in ParaView, press Apply, and colour by
+The picture build/office.png shows the illuminance in the room: open it in any viewer of images.
+
+The result itself is build/office.vtp. To look at it: open it in ParaView, press Apply, and colour by
 "illuminance" or "daylight_factor". "Backface Representation: Cull Backface" in the properties
 lets you look into the room from outside. The illuminance at desk height is in
 build/office.sensors.csv, the figures of the run are in build/office.json.

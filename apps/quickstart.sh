@@ -13,10 +13,12 @@ cmake --build --preset release
 echo "== 3 of 3: solving a daylit office, and what one takes home from it"
 program=build/release/bin/clerestory
 "$program" solve data/scenes/office.json -o build/office.vtp --report build/office.json
+"$program" render build/office.vtp -o build/office.png --show illuminance --log-scale --isolux 100,200,300,500
 "$program" report build/office.vtp -o build/office.html --target 300
 
 cat <<END
 
+build/office.png is a picture of the room in false colours of illuminance, with isolux lines: open it in any viewer.
 build/office.html is a page for whoever asked: figures, plans, and a 3D view to turn and to click. Open it in
 a browser; it needs no network.
 
@@ -25,6 +27,7 @@ The result itself is build/office.vtp. To look at it: open it in ParaView, press
 lets you look into the room from outside. The illuminance at desk height is in
 build/office.sensors.csv, the figures of the run are in build/office.json.
 
-Next:  $program solve data/scenes/house.json -o build/house.vtp
+Next:  $program bake build/office.vtp -o build/office.glb        a lightmap for three.js, Blender and others
+       $program solve data/scenes/house.json -o build/house.vtp
        $program --help
 END

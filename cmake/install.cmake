@@ -24,6 +24,8 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clerestory/ifc
 install(DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clerestory/page
   DESTINATION ${CMAKE_INSTALL_DATADIR}/clerestory)
 
+install(FILES data/paraview/clerestory_view.py DESTINATION ${CMAKE_INSTALL_DATADIR}/clerestory/paraview)
+
 # The doors, not what is behind them: these headers need the standard library only.
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/clerestory)
 install(DIRECTORY solver DESTINATION ${include_dir} FILES_MATCHING PATTERN "*.h")

@@ -21,5 +21,6 @@ void add_mesh_command(CLI::App& program, Task& task);
 void add_formfactors_command(CLI::App& program, Task& task);
 void add_tradeoff_command(CLI::App& program, Task& task);
 void add_report_command(CLI::App& program, Task& task);
+void add_render_command(CLI::App& program, Task& task);
 
 }  // namespace clerestory

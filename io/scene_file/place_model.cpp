@@ -4,7 +4,6 @@
 #include <limits>
 #include <numbers>
 
-#include "io/affine.h"
 #include "io/input_file.h"
 #include "io/scene_file/own_materials.h"
 #include "io/text.h"
@@ -12,17 +11,6 @@
 
 namespace clerestory {
 namespace {
-
-/// First the unit, then the turn of (x, y, z) into (x, -z, y), then the transform.
-Affine to_scene(double metres, Up up, const std::optional<std::array<double, 16>>& transform) {
-  Affine file;
-  if (up == Up::y) file.A = {Vec3{1, 0, 0}, Vec3{0, 0, -1}, Vec3{0, 1, 0}};
-  for (Vec3& row : file.A) row *= metres;
-  if (!transform) return file;
-  const auto& t = *transform;
-  const Affine placed{{Vec3{t[0], t[1], t[2]}, Vec3{t[4], t[5], t[6]}, Vec3{t[8], t[9], t[10]}}, {t[3], t[7], t[11]}};
-  return placed * file;
-}
 
 void warn_once(Scene& scene, ModelsInScene& before, std::string warning) {
   if (before.warnings.insert(warning).second) scene.warnings.push_back(std::move(warning));
@@ -174,6 +162,16 @@ void warn_of_size(Scene& scene, ModelsInScene& before, const Vec3& size, bool un
 std::string words_of_unit(double metres) { return metres == 1 ? "metres" : text("units of ", metres, " m"); }
 
 }  // namespace
+
+Affine to_scene(double metres, Up up, const std::optional<std::array<double, 16>>& transform) {
+  Affine file;
+  if (up == Up::y) file.A = {Vec3{1, 0, 0}, Vec3{0, 0, -1}, Vec3{0, 1, 0}};
+  for (Vec3& row : file.A) row *= metres;
+  if (!transform) return file;
+  const auto& t = *transform;
+  const Affine placed{{Vec3{t[0], t[1], t[2]}, Vec3{t[4], t[5], t[6]}, Vec3{t[8], t[9], t[10]}}, {t[3], t[7], t[11]}};
+  return placed * file;
+}
 
 std::optional<double> metres_of_unit(std::string_view unit) {
   if (unit == "m") return 1.0;

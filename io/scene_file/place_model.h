@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "io/affine.h"
 #include "io/formats/model.h"
 
 namespace clerestory {
@@ -19,6 +20,10 @@ struct Placement {
   std::optional<Up> up;
   std::optional<std::array<double, 16>> transform;  ///< row-major, of the scene's frame [m]; last row 0 0 0 1
 };
+
+/// From a model's frame into the scene's: first the unit, then the turn of (x, y, z) into (x, -z, y), then the
+/// transform.
+Affine to_scene(double metres, Up up, const std::optional<std::array<double, 16>>& transform);
 
 /// Metres of "m", "cm", "mm", "ft" or "in"; nothing for other words.
 std::optional<double> metres_of_unit(std::string_view unit);

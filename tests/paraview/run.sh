@@ -11,3 +11,5 @@ for scene in furnace cornell_box office; do
 done
 
 bash "$here/pvpython.sh" "$here/open_results.py" "$results"
+bash "$here/pvpython.sh" "$here/run_macro.py" "$here/../../data/paraview/clerestory_view.py" "$results/office.vtp" \
+  "$results/macro.png"

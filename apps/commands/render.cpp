@@ -1,0 +1,164 @@
+// clerestory render: a picture of a result, without a display.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/finish_report.h"
+#include "apps/run.h"
+#include "apps/view_words.h"
+#include "io/atomic_file.h"
+#include "io/picture/encode.h"
+#include "io/read_result.h"
+#include "pipeline/view/render_view.h"
+#include "pipeline/wording.h"
+
+namespace clerestory {
+namespace {
+
+struct Arguments {
+  CommonArguments common;
+  std::string input, output;
+  ViewRequest view;
+  bool fits = false;
+
+  bool as_exr() const { return output.ends_with(".exr"); }
+};
+
+ExitCode render_command(const Arguments& arguments, Console& console) {
+  if (const Problem problem = problem_with_view(arguments.view, arguments.as_exr()); !problem.empty()) {
+    console.fail(problem + ".");
+    return kWrongUsage;
+  }
+  check_writable(arguments.output);
+  require_picture_files();
+  const WrittenResult result = read_result(arguments.input);
+  console.has_read({arguments.input});
+  const RenderedView view =
+      render_view(result, arguments.input, arguments.view, arguments.as_exr(), console, console.monitor());
+  if (view.bytes.empty()) {
+    console.warn("interrupted before the picture was complete; nothing is written.");
+    return kInterrupted;
+  }
+  RunReport report = new_report(arguments.input);
+  report.counts.triangles = result.triangles.size();
+  Outputs outputs;
+  outputs.open(arguments.output).write(view.bytes);
+  finish_report(report, arguments.common, console, outputs);
+  console.say(arguments.input + ": " + std::to_string(view.width) + " x " + std::to_string(view.height) + " pixels, " +
+              counted(static_cast<unsigned long long>(arguments.view.samples), "ray") + " each");
+  for (const std::string& note : view.notes) console.say("  " + note);
+  console.commit(outputs);
+  console.say("  picture " + arguments.output);
+  return kDone;
+}
+
+/// An option of words that `read` makes a value of, or says why not.
+template <class Read>
+CLI::Option* add_words(CLI::App& command, const std::string& name, const std::string& unit, const std::string& help,
+                       const Read& read) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [name, read](const std::string& words) {
+            if (const Problem problem = read(words); !problem.empty()) throw CLI::ValidationError(name, problem);
+          },
+          help)
+      ->type_name(unit);
+}
+
+/// fits: what --fit says, which is the default anyway.
+void add_camera_options(CLI::App& command, ViewRequest& view, bool& fits) {
+  add_words(command, "--eye", "X,Y,Z", "where one looks from, in metres",
+            [&view](const std::string& words) { return read_place(words, view.eye); });
+  add_words(command, "--target", "X,Y,Z", "what one looks at, in metres",
+            [&view](const std::string& words) { return read_place(words, view.target); });
+  add_words(command, "--up", "X,Y,Z", "what is above in the picture (default: 0,0,1)",
+            [&view](const std::string& words) { return read_place(words, view.up); });
+  command
+      .add_option(
+          "--fov", view.fov,
+          "angle across the longer side of the picture in degrees, as in Blender (default: the camera's, or 60)")
+      ->type_name("DEGREES")
+      ->check(CLI::Validator(
+          [](std::string& words) {
+            double value = 0;
+            const bool is_angle = CLI::detail::lexical_cast(words, value) && value > 0 && value < 180;
+            return is_angle ? std::string() : words + " is not an angle above 0 and below 180 degrees";
+          },
+          ""));
+  CLI::Option* camera =
+      command.add_option("--camera", view.camera, "a camera of the glTF model that was solved, by its name")
+          ->type_name("NAME");
+  CLI::Option* fit = command.add_flag("--fit", fits, "from outside above a corner into the rooms; the default");
+  CLI::Option* plan = command
+                          .add_option_function<double>(
+                              "--plan",
+                              [&view](const double& z) {
+                                view.cut = Cut{2, z};
+                              },
+                              "a plan of what is below this height in metres, to scale, +y up")
+                          ->type_name("Z");
+  CLI::Option* section =
+      add_words(command, "--section", "x=X|y=Y", "a section seen along +x or +y from that place in metres, to scale",
+                [&view](const std::string& words) { return read_section(words, view.cut); });
+  command.add_flag("--outdoors", view.outdoors,
+                   "of --fit, --plan and --section: show what is outdoors, too, where there are rooms");
+  CLI::Option* fisheye = command.add_flag("--fisheye", view.fisheye,
+                                          "half a sphere by --eye and --target, or --camera: equidistant, 180 degrees");
+  CLI::Option* eye = command.get_option("--eye");
+  fit->excludes(plan)->excludes(section)->excludes(camera)->excludes(eye)->excludes(fisheye);
+  plan->excludes(section)->excludes(camera)->excludes(eye)->excludes(fisheye);
+  section->excludes(camera)->excludes(eye)->excludes(fisheye);
+  camera->excludes(eye)->excludes(command.get_option("--target"));
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program, Task& task) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *program.add_subcommand("render", "a picture of a result, in true or false colours");
+  ViewRequest& view = arguments->view;
+  command.add_option("SOLUTION", arguments->input, "a result of clerestory solve")->type_name("FILE.vtp")->required();
+  command
+      .add_option("-o,--output", arguments->output,
+                  "the picture; an .exr holds the values themselves: lux, cd/m2, %, of colours W/(m2 sr)")
+      ->type_name("VIEW.png|.exr")
+      ->required()
+      ->check(CLI::Validator(
+          [](std::string& file) {
+            return file.ends_with(".png") || file.ends_with(".exr") ? std::string()
+                                                                    : file + " does not end in .png or .exr";
+          },
+          ""));
+  add_camera_options(command, view, arguments->fits);
+  add_words(command, "--size", "WIDTHxHEIGHT", "of the view in pixels; a legend comes beside it (default: 1920x1080)",
+            [&view](const std::string& words) { return read_size(words, view.width, view.height); });
+  command.add_option("--samples", view.samples, "rays a pixel (default: 16)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--show", view.show,
+                  "colour, luminance, illuminance, daylight_factor or another array on the points of the result "
+                  "(default: colour)")
+      ->type_name("NAME");
+  command.add_option("--exposure", view.ev, "of true colours: stops brighter than the automatic one (default: 0)")
+      ->type_name("EV")
+      ->check(CLI::Range(-50.0, 50.0));
+  add_words(command, "--range", "LOW:HIGH", "of false colours, in the unit shown (default: around what is seen)",
+            [&view](const std::string& words) { return read_range(words, view.range); });
+  command.add_flag("--log-scale", view.log_scale, "false colours by logarithm");
+  add_words(command, "--isolux", "A,B,...",
+            "lines of equal value, with their numbers: of what is shown, with true colours of illuminance in lux",
+            [&view](const std::string& words) { return read_levels(words, view.isolux); });
+  add_common_options(command, arguments->common);
+  command.footer(
+      "example: clerestory render office.vtp -o plan.png --plan 1.2 --show illuminance --isolux 300,500,750");
+  command.callback([arguments, &task] {
+    task = [arguments] {
+      return run(arguments->common, arguments->input, {{"-o", arguments->output}},
+                 [&](Console& console) { return render_command(*arguments, console); });
+    };
+  });
+}
+
+}  // namespace clerestory

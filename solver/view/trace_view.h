@@ -1,0 +1,70 @@
+#pragma once
+// What a camera sees of a result, as numbers.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/model/monitor.h"
+#include "solver/model/view_image.h"
+#include "solver/model/written_result.h"
+#include "solver/view/camera.h"
+#include "solver/visibility/glass_sheet.h"
+#include "solver/visibility/seen_surfaces.h"
+
+namespace clerestory {
+
+/// What is seen: values on the points of one-sided triangles, linear on them.
+struct ShownField {
+  int channels = 1;              ///< 1 or 3
+  std::vector<float> of_points;  ///< rows of so many
+  /// Radiance [W/(m2 sr)]: mirrors and panes take their share and turn some, and the sky may be seen. Else a quantity
+  /// of surfaces: a mirror shows that of what it mirrors, a pane is not there.
+  bool is_radiance = true;
+};
+
+/// Radiance of diffuse surfaces, B / pi.
+ShownField radiance_of(const WrittenResult& result);
+
+struct ViewOptions {
+  int samples = 16;      ///< rays a pixel
+  bool sees_sky = true;  ///< by radiance; else there is nothing beyond the surfaces
+  double most = 1e30;    ///< values above are taken as this, each ray's for itself
+};
+
+class ViewScene {
+ public:
+  /// triangles  of the result that are shown, by number. The result outlives it.
+  ViewScene(const WrittenResult& result, ShownField field, std::vector<std::uint32_t> triangles);
+
+  /// Empty when the monitor stopped it.
+  ///
+  /// Threads: same bits for any thread count. Rays are turned by mirrors and panes until less than 1 % of the light
+  /// would come that way, 16 times at most.
+  ViewImage trace(const Camera& camera, const ViewOptions& options, const Monitor& monitor = {}) const;
+
+  const SeenSurfaces& surfaces() const { return surfaces_; }
+  /// Corners of the triangles that are shown.
+  const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+  /// Share of all directions in which the eye meets the back of something first: above one half, it is inside of it.
+  double backs_around(const Vec3& eye) const;
+
+ private:
+  class Tile;
+  struct Pane {
+    Vec3 normal;           ///< unit
+    Spectrum mirror{0.0};  ///< reflectance
+    int table = -1;        ///< of `glass_`; below 0: a mirror
+  };
+  const WrittenResult& result_;
+  ShownField field_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<std::uint32_t> shown_panes_;  ///< of the result
+  std::vector<Pane> panes_;
+  std::vector<GlassTable> glass_;
+  std::vector<float> corner_values_;  ///< 3 x channels a triangle
+  SeenSurfaces surfaces_;
+};
+
+}  // namespace clerestory

@@ -79,7 +79,6 @@ std::array<int, 2> pack_charts(std::vector<AtlasChart>& charts) {
       for (const int heuristic : {STBRP_HEURISTIC_Skyline_BL_sortHeight, STBRP_HEURISTIC_Skyline_BF_sortHeight})
         tries.push_back({width, heuristic, standing});
     }
-    tries.push_back({kLargestAtlas, STBRP_HEURISTIC_Skyline_BL_sortHeight, standing});
   }
   std::vector<std::int64_t> size(tries.size(), 0);
   const auto layout_of = [&](const Try& t) { return packed(rects[t.standing], t.width, t.heuristic); };

@@ -21,6 +21,8 @@ void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const WrittenResul
 struct GlbLook {
   double exposure = 1;   ///< [m2/W], by exposure_of()
   std::string lightmap;  ///< name of the picture on atlas_uv that shows the light in place of COLOR_0; may be empty
+  /// The picture as MOZ_lightmap, to multiply the base colour by, and not as base colour texture, which does the same.
+  bool lightmap_extension = false;
 };
 
 /// glTF 2.0, y up: a node and a mesh a surface, a primitive a material of it, with COLOR_0 (shown x exposure, linear,

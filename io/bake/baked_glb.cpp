@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <span>
 
@@ -62,15 +63,38 @@ class Primitives {
   std::vector<std::uint32_t> place_;  ///< of each vertex in the primitive under way
 };
 
+/// A file's name as a URI.
+std::string percent_encoded(std::string_view name) {
+  constexpr std::string_view kPlain = "-._~", kDigits = "0123456789ABCDEF";
+  std::string uri;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 128 && std::isalnum(byte)) || kPlain.find(c) != kPlain.npos)
+      uri += c;
+    else
+      uri += {'%', kDigits[byte / 16], kDigits[byte % 16]};
+  }
+  return uri;
+}
+
 /// Materials of the file by those of the result, added when they are first used.
 class Materials {
  public:
   Materials(GlbBuilder& glb, const WrittenResult& result, const GlbLook& look)
-      : glb_(glb), result_(result), glows_(glowing_materials(result)), index_(result.materials.size()) {
-    if (!look.lightmap.empty()) {
-      const std::size_t image = glb.add("images", {{"uri", look.lightmap}});
-      texture_ = {{"index", glb.add("textures", {{"source", image}})}, {"texCoord", 1}};
-    }
+      : glb_(glb),
+        result_(result),
+        glows_(glowing_materials(result)),
+        index_(result.materials.size()),
+        as_extension_(look.lightmap_extension) {
+    if (look.lightmap.empty()) return;
+    // No smaller copies: charts are but a texel apart in them.
+    const std::size_t sampler = glb.add("samplers", {{"magFilter", kLinear},
+                                                     {"minFilter", kLinear},
+                                                     {"wrapS", kClampToEdge},
+                                                     {"wrapT", kClampToEdge}});
+    const std::size_t image = glb.add("images", {{"uri", percent_encoded(look.lightmap)}});
+    const std::size_t texture = glb.add("textures", {{"sampler", sampler}, {"source", image}});
+    texture_ = {{"index", texture}, {"texCoord", 1}};
   }
   std::size_t operator()(std::uint32_t material) {
     std::optional<std::size_t>& index = index_[material];
@@ -83,19 +107,26 @@ class Materials {
     Json base = {{"metallicFactor", 0}};
     const Spectrum rho = glows ? Spectrum(1.0) : material.reflectance;
     base["baseColorFactor"] = {rho[0], rho[1], rho[2], 1};
-    if (!texture_.empty()) base["baseColorTexture"] = texture_;
+    if (!texture_.empty() && !as_extension_) base["baseColorTexture"] = texture_;
     Json json = {{"pbrMetallicRoughness", std::move(base)}, {"extensions", {{kUnlit, Json::object()}}}};
+    if (as_extension_) {
+      json["extensions"][kLightmap] = texture_;
+      json["extensions"][kLightmap]["intensity"] = 1;
+      glb_.use(kLightmap);
+    }
     if (!material.name.empty()) json["name"] = material.name;
     glb_.use(kUnlit);
     return glb_.add("materials", std::move(json));
   }
 
-  static constexpr const char* kUnlit = "KHR_materials_unlit";
+  static constexpr const char *kUnlit = "KHR_materials_unlit", *kLightmap = "MOZ_lightmap";
+  static constexpr int kLinear = 9729, kClampToEdge = 33071;
   GlbBuilder& glb_;
   const WrittenResult& result_;
   std::vector<bool> glows_;
   std::vector<std::optional<std::size_t>> index_;
-  Json texture_;
+  bool as_extension_;
+  Json texture_;  ///< empty: none
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "meshing/atlas/fit_texels.h"
 #include "meshing/atlas/measure_atlas.h"
 #include "meshing/atlas/pack_charts.h"
+#include "solver/model/bake_points.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
 
@@ -59,6 +60,18 @@ void set_uv(const WrittenResult& result, LightmapAtlas& atlas) {
       }
     }
   }
+}
+
+/// P x channels of the atlas.
+Field values_at_points(const WrittenResult& result) {
+  const std::vector<float>& lux = result.of_points.at("illuminance").value;
+  const Field shown = shown_at_points(result, glowing_materials(result));
+  Field value(result.points.size(), LightmapAtlas::kShown + shown.channels);
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    value.at(i, LightmapAtlas::kIlluminance) = lux[i];
+    for (int k = 0; k < shown.channels; ++k) value.at(i, LightmapAtlas::kShown + k) = shown.at(i, k);
+  }
+  return value;
 }
 
 /// Charts by texels, most first: threads end together.
@@ -131,12 +144,13 @@ void paint(const WrittenResult& result, const Field& value, LightmapAtlas& atlas
 
 }  // namespace
 
-LightmapAtlas make_atlas(const WrittenResult& result, const Field& value, double texels_per_metre) {
+LightmapAtlas make_atlas(const WrittenResult& result, double texels_per_metre) {
   const double area = area_of(result);
   if (area * texels_per_metre * texels_per_metre > kMostTexels) refuse(result, texels_per_metre, area);
   LightmapAtlas atlas;
   atlas.texels_per_metre = texels_per_metre;
   atlas.charts = find_charts(result, texels_per_metre);
+  const Field value = values_at_points(result);
   atlas.channels = value.channels;
   const auto [width, height] = pack_charts(atlas.charts);
   if (width == 0) refuse(result, texels_per_metre, area);

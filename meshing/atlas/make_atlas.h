@@ -1,5 +1,5 @@
 #pragma once
-// A result and values on its points -> a texture lightmap.
+// A result -> a texture lightmap.
 
 #include "solver/model/baked_mesh.h"
 #include "solver/model/lightmap_atlas.h"
@@ -7,13 +7,13 @@
 
 namespace clerestory {
 
-/// Charts (find_charts.h), their places (pack_charts.h), their texels (fit_texels.h), and how far off lookups are.
+/// Charts (find_charts.h), their places (pack_charts.h), their texels (fit_texels.h), and how far off lookups are
+/// (measure_atlas.h). Channels are illuminance [lx] and what BakedMesh::shown is.
 ///
 /// texels_per_metre  > 0
-/// value             P x channels, a value on each point; errors count as shares of the first channel.
 /// throws            InputError when no picture of 16384 x 16384 texels holds it; the message tells what one would.
 /// Threads: same bits for any thread count.
-LightmapAtlas make_atlas(const WrittenResult& result, const Field& value, double texels_per_metre);
+LightmapAtlas make_atlas(const WrittenResult& result, double texels_per_metre);
 
 /// The mesh with places in the atlas: vertices that several charts have are repeated.
 ///

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "solver/model/channels.h"
@@ -50,11 +50,16 @@ struct LightmapAtlas {
   std::vector<AtlasChart> charts;
   std::vector<std::uint32_t> chart_of;                      ///< N, of each triangle
   std::vector<std::array<std::array<float, 2>, 3>> uv;      ///< N, of its corners, in [0, 1], v down
+  static constexpr int kIlluminance = 0, kShown = 1;  ///< channels: [lx]; BakedMesh::shown, one or three [W/m2]
   int channels = 1;
   std::vector<float> value;  ///< width x height x channels, row by row from the top
   double used = 0;           ///< share of the texels that a lookup reaches, or that lie beside such
   AtlasError error;          ///< of the first channel
 
+  std::size_t texels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  float at(std::size_t texel, int channel) const {
+    return value[texel * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel)];
+  }
   /// What a viewer finds at (u, v): bilinear between texel centres, clamped to the edge.
   float lookup(float u, float v, int channel) const;
 };

@@ -180,7 +180,7 @@ class ChartFinder {
     const Vec3 first = frame.t * r.axis[0] + frame.b * r.axis[1], second = frame.b * r.axis[0] - frame.t * r.axis[1];
     chart.origin = at + first * r.low[0] + second * r.low[1];
     const auto divide = [&](double length, const Vec3& axis, int& texels, Vec3& step) {
-      texels = std::max(2, 1 + static_cast<int>(std::min<double>(kBeyondAnyAtlas,
+      texels = std::max(piece.triangles.size() > 2 ? 4 : 2, 1 + static_cast<int>(std::min<double>(kBeyondAnyAtlas,
                                                                   std::ceil(length * texels_per_metre_ - 1e-4))));
       step = axis * (length > 0 ? length / (texels - 1) : 1 / texels_per_metre_);
     };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPerCell = 3;           // samples each way
 constexpr double kRimWeight = 1;      // of a sample on the rim, a ninth is that of one inside
-constexpr double kEdgeWeight = 0.1;   // of one on an edge between triangles
+constexpr double kEdgeWeight = 0.03;  // of one on an edge between triangles
 constexpr double kPointWeight = 0.1;  // of one on a point
 constexpr double kDark = 1e-3;        // of the chart's largest value: below it errors count as if it were this
 constexpr double kStay = 1e-4;        // weight of x0, as a share of the samples'

@@ -34,15 +34,23 @@ double rounded_down(double x) {
 }
 
 [[noreturn]] void refuse(const WrittenResult& result, double asked, double area) {
-  // What fits, tried.
-  double fits = rounded_down(std::min(asked * 0.95, std::sqrt(0.9 * kMostTexels / area)));
-  for (int i = 0; i < 40; ++i, fits = rounded_down(0.85 * fits)) {
-    std::vector<AtlasChart> charts = find_charts(result, fits);
-    if (pack_charts(charts)[0] > 0) break;
-  }
+  // Charts as they are cut for some 4 million texels, drawn finer.
+  const double coarse = std::min(asked, std::sqrt(4e6 / area));
+  const std::vector<AtlasChart> charts = find_charts(result, coarse);
+  const auto texels_fit = [&](double texels_per_metre) {
+    std::vector<AtlasChart> finer = charts;
+    const auto grow = [&](int& texels) {
+      texels = static_cast<int>(std::min(1e6, std::ceil((texels - 1) * texels_per_metre / coarse) + 1));
+    };
+    for (AtlasChart& chart : finer) grow(chart.width), grow(chart.height);
+    return pack_charts(finer)[0] > 0;
+  };
+  double most = std::min(asked * 0.95, std::sqrt(0.95 * kMostTexels / area));
+  for (int i = 0; i < 200 && !texels_fit(most); ++i) most *= 0.95;
   std::ostringstream message;
   message << result.file << ": " << asked << " texels per metre need a picture larger than " << kLargestAtlas << " x "
-          << kLargestAtlas << " for " << std::llround(area) << " m2; --texels-per-metre " << fits << " fits.";
+          << kLargestAtlas << " for " << std::llround(area) << " m2; --texels-per-metre " << rounded_down(0.95 * most)
+          << " fits.";
   throw InputError(message.str());
 }
 

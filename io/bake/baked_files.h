@@ -21,7 +21,7 @@ void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const WrittenResul
 struct GlbLook {
   double exposure = 1;   ///< [m2/W], by exposure_of()
   std::string lightmap;  ///< name of the picture on atlas_uv that shows the light in place of COLOR_0; may be empty
-  /// The picture as MOZ_lightmap, to multiply the base colour by, and not as base colour texture, which does the same.
+  /// The picture as MOZ_lightmap, of materials that are not unlit, and not as base colour texture of such that are.
   bool lightmap_extension = false;
 };
 

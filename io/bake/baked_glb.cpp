@@ -108,14 +108,12 @@ class Materials {
     const Spectrum rho = glows ? Spectrum(1.0) : material.reflectance;
     base["baseColorFactor"] = {rho[0], rho[1], rho[2], 1};
     if (!texture_.empty() && !as_extension_) base["baseColorTexture"] = texture_;
-    Json json = {{"pbrMetallicRoughness", std::move(base)}, {"extensions", {{kUnlit, Json::object()}}}};
-    if (as_extension_) {
-      json["extensions"][kLightmap] = texture_;
-      json["extensions"][kLightmap]["intensity"] = 1;
-      glb_.use(kLightmap);
-    }
+    Json json = {{"pbrMetallicRoughness", std::move(base)}};
+    // Not both: a viewer that knows lightmaps lights the material by it alone, in a scene without lights.
+    json["extensions"][as_extension_ ? kLightmap : kUnlit] = as_extension_ ? texture_ : Json::object();
+    if (as_extension_) json["extensions"][kLightmap]["intensity"] = 1;
     if (!material.name.empty()) json["name"] = material.name;
-    glb_.use(kUnlit);
+    glb_.use(as_extension_ ? kLightmap : kUnlit);
     return glb_.add("materials", std::move(json));
   }
 

@@ -64,14 +64,24 @@ class Equations {
     r0[3] += weight * b[0] * b[2], r1[3] += weight * b[1] * b[3];
     r0[4] += weight * b[0] * b[3];
     for (std::size_t k = 0; k < 4; ++k) {
-      // A corner of no weight has no say, but it is reached by what lies a rounding away.
-      const double w = weight * (b[k] + 1e-6);
+      const double w = weight * b[k];
       start_weight_[texel[k]] += w;
       const double cx = static_cast<double>(i + k % 2), cy = static_cast<double>(j + k / 2);
       for (std::size_t c = 0; c < channels_; ++c) {
         right_side_[texel[k] * channels_ + c] += weight * b[k] * f[c];
         start_[texel[k] * channels_ + c] += w * planes[c](cx, cy);
       }
+    }
+  }
+
+  /// The texels of a cell that a triangle touches: they go on as its planes do where no sample says more.
+  void touch(int column, int row, std::span<const Plane> planes) {
+    const std::size_t at = static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t i = at + k % 2 + k / 2 * width_;
+      start_weight_[i] += kTouch;
+      for (std::size_t c = 0; c < channels_; ++c)
+        start_[i * channels_ + c] += kTouch * planes[c](column + static_cast<double>(k % 2), row + static_cast<double>(k / 2));
     }
   }
 
@@ -102,6 +112,7 @@ class Equations {
 
  private:
   using Row = std::array<double, 5>;
+  static constexpr double kTouch = 1e-30;
 
   /// y = A x
   void multiply(const std::vector<double>& x, std::vector<double>& y) const {
@@ -248,6 +259,9 @@ std::vector<float> fit_texels(const WrittenResult& result, const AtlasChart& cha
       const double shown = std::max(f[0], floor);
       equations.add(x, y, weight / (shown * shown), f, planes);
     };
+    for_rows_of_cells(corner, chart.width - 1, chart.height - 1, [&](int row, int first, int last) {
+      for (int column = first; column <= last; ++column) equations.touch(column, row, planes);
+    });
     const auto [low, high] = std::minmax({corner[0][1], corner[1][1], corner[2][1]});
     const auto next = [](double x) { return std::max(0.0, std::ceil(x * kPerCell - 0.5)); };
     for (double j = next(low); (j + 0.5) / kPerCell <= high; ++j) {

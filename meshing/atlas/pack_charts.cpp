@@ -58,6 +58,7 @@ std::vector<stbrp_rect> rectangles(const std::vector<AtlasChart>& charts, bool s
 }  // namespace
 
 std::array<int, 2> pack_charts(std::vector<AtlasChart>& charts) {
+  if (charts.empty()) return {4, 4};
   double area = 0;
   for (const AtlasChart& c : charts) area += (c.width + 2.0) * (c.height + 2.0);
   if (area > double{kLargestAtlas} * kLargestAtlas) return {0, 0};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <tuple>
 
 #include "meshing/atlas/raster.h"
 
@@ -21,7 +22,12 @@ constexpr double kSolved = 1e-7;      // residual, as a share of the first
 /// Value of a channel on a triangle: at + x grad_x + y grad_y [per texel].
 struct Plane {
   double at = 0, grad_x = 0, grad_y = 0;
+  double lowest = 0, highest = 0;  ///< at the corners
   double operator()(double x, double y) const { return at + x * grad_x + y * grad_y; }
+  /// The same outside, no farther away than the corners are from each other.
+  double beyond(double x, double y) const {
+    return std::clamp((*this)(x, y), 2 * lowest - highest, 2 * highest - lowest);
+  }
 };
 
 Plane plane_of(const std::array<Texel, 3>& t, const std::array<double, 3>& f) {
@@ -29,6 +35,7 @@ Plane plane_of(const std::array<Texel, 3>& t, const std::array<double, 3>& f) {
   const double det = ux * vy - uy * vx;
   const double longest = std::max({std::hypot(ux, uy), std::hypot(vx, vy), std::hypot(ux - vx, uy - vy)});
   Plane plane;
+  std::tie(plane.lowest, plane.highest) = std::minmax({f[0], f[1], f[2]});
   // Needles tell nothing across.
   if (std::abs(det) > 1e-3 * longest * longest && longest > 1e-3) {
     const double du = f[1] - f[0], dv = f[2] - f[0];
@@ -69,7 +76,7 @@ class Equations {
       const double cx = static_cast<double>(i + k % 2), cy = static_cast<double>(j + k / 2);
       for (std::size_t c = 0; c < channels_; ++c) {
         right_side_[texel[k] * channels_ + c] += weight * b[k] * f[c];
-        start_[texel[k] * channels_ + c] += w * planes[c](cx, cy);
+        start_[texel[k] * channels_ + c] += w * planes[c].beyond(cx, cy);
       }
     }
   }
@@ -81,22 +88,21 @@ class Equations {
       const std::size_t i = at + k % 2 + k / 2 * width_;
       start_weight_[i] += kTouch;
       for (std::size_t c = 0; c < channels_; ++c)
-        start_[i * channels_ + c] += kTouch * planes[c](column + static_cast<double>(k % 2), row + static_cast<double>(k / 2));
+        start_[i * channels_ + c] += kTouch * planes[c].beyond(column + static_cast<double>(k % 2), row + static_cast<double>(k / 2));
     }
   }
 
   bool is_reached(std::size_t i) const { return start_weight_[i] > 0; }
 
-  /// Width x height x channels.
-  std::vector<double> solve(std::span<const double> lowest, std::span<const double> highest) {
+  /// Width x height x channels. Where the values' lowest is not below 0, no texel is.
+  std::vector<double> solve(std::span<const double> lowest) {
     for (std::size_t i = 0; i < row_.size(); ++i) {
       if (!is_reached(i)) continue;
       const double stay = kStay * std::max(row_[i][0], start_weight_[i]);
       row_[i][0] += stay;
       for (std::size_t c = 0; c < channels_; ++c) {
         double& x0 = start_[i * channels_ + c];
-        const double range = highest[c] - lowest[c];
-        x0 = std::clamp(x0 / start_weight_[i], lowest[c] - range, highest[c] + range);
+        x0 /= start_weight_[i];
         if (lowest[c] >= 0) x0 = std::max(x0, 0.0);
         right_side_[i * channels_ + c] += stay * x0;
       }
@@ -226,7 +232,8 @@ void repeat_nearest(int width, int height, std::size_t channels, std::vector<std
 
 std::vector<float> fit_texels(const WrittenResult& result, const AtlasChart& chart, const Field& value) {
   const auto channels = static_cast<std::size_t>(value.channels);
-  std::vector<double> lowest(channels, 1e300), highest(channels, -1e300);
+  std::vector<double> lowest(channels, 1e300);
+  double brightest = 0;
   std::vector<std::array<std::uint32_t, 2>> inner;  // edges that two triangles of the chart have, once each
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const std::uint32_t t : chart.triangles)
@@ -235,14 +242,14 @@ std::vector<float> fit_texels(const WrittenResult& result, const AtlasChart& cha
       const auto [a, b] = std::minmax(p, result.triangles[t][(k + 1) % 3]);
       edges.push_back({a, b});
       for (std::size_t c = 0; c < channels; ++c) {
-        const double v = value.at(p, static_cast<int>(c));
-        lowest[c] = std::min(lowest[c], v), highest[c] = std::max(highest[c], v);
+        lowest[c] = std::min(lowest[c], value.at(p, static_cast<int>(c)));
       }
+      brightest = std::max(brightest, value.at(p, 0));
     }
   std::sort(edges.begin(), edges.end());
   for (std::size_t i = 1; i < edges.size(); ++i)
     if (edges[i] == edges[i - 1]) inner.push_back(edges[i]);
-  const double floor = std::max(kDark * highest[0], 1e-30);
+  const double floor = std::max(kDark * brightest, 1e-30);
 
   Equations equations(chart.width, chart.height, value.channels);
   std::vector<double> f(channels);
@@ -290,7 +297,7 @@ std::vector<float> fit_texels(const WrittenResult& result, const AtlasChart& cha
     }
   }
 
-  const std::vector<double> x = equations.solve(lowest, highest);
+  const std::vector<double> x = equations.solve(lowest);
   std::vector<float> texels(x.begin(), x.end());
   std::vector<std::uint8_t> is_known(x.size() / channels);
   for (std::size_t i = 0; i < is_known.size(); ++i) is_known[i] = equations.is_reached(i);

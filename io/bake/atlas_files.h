@@ -15,8 +15,8 @@ void write_atlas_exr(AtomicFile& file, const LightmapAtlas& atlas);
 /// throws  InputError as require_picture_files().
 void write_atlas_png(AtomicFile& file, const LightmapAtlas& atlas, double exposure);
 
-/// Size, texels per metre, share used, error, and each chart: surface, normal, rectangle, place and step of its texels in
-/// the scene, area.
+/// Size, texels per metre, share used, error, and each chart: surface, normal, rectangle, place and step of its texels
+/// in the scene, area.
 void write_atlas_json(AtomicFile& file, const LightmapAtlas& atlas, const WrittenResult& result);
 
 }  // namespace clerestory

@@ -2,6 +2,7 @@
 // A lightmap on vertices -> PLY, OBJ, GLB.
 
 #include <string>
+#include <vector>
 
 #include "io/atomic_file.h"
 #include "solver/model/baked_mesh.h"
@@ -15,8 +16,16 @@ namespace clerestory {
 /// exposure  [m2/W], by exposure_of()
 void write_baked_ply(AtomicFile& file, const BakedMesh& mesh, double exposure);
 
+/// What the numbers in BakedMesh::surface and ::material stand for.
+struct BakedNames {
+  std::vector<std::string> surfaces;
+  std::vector<Material> materials;
+  std::vector<bool> glows;  ///< by material, as glowing_materials()
+};
+BakedNames names_of(const WrittenResult& result);
+
 /// Text: v x y z r g b (shown x exposure, sRGB), vn, an object a surface. Positions have all their digits.
-void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const WrittenResult& result, double exposure);
+void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const BakedNames& names, double exposure);
 
 struct GlbLook {
   double exposure = 1;   ///< [m2/W], by exposure_of()
@@ -30,6 +39,6 @@ struct GlbLook {
 /// With atlas_uv also TEXCOORD_1. Far from the origin, one node above all moves the positions there.
 ///
 /// throws  InputError when it grows beyond 4 GiB, which is all that a .glb can hold.
-void write_baked_glb(AtomicFile& file, const BakedMesh& mesh, const WrittenResult& result, const GlbLook& look);
+void write_baked_glb(AtomicFile& file, const BakedMesh& mesh, const BakedNames& names, const GlbLook& look);
 
 }  // namespace clerestory

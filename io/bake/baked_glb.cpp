@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <utility>
 
-#include "io/bake/baked_files.h"
-#include "io/bake/glb_builder.h"
+#include "io/bake/baked_nodes.h"
 #include "solver/model/bake_points.h"
 
 namespace clerestory {
@@ -80,25 +81,19 @@ std::string percent_encoded(std::string_view name) {
 /// Materials of the file by those of the result, added when they are first used.
 class Materials {
  public:
-  Materials(GlbBuilder& glb, const WrittenResult& result, const GlbLook& look)
-      : glb_(glb),
-        result_(result),
-        glows_(glowing_materials(result)),
-        index_(result.materials.size()),
-        as_extension_(look.lightmap_extension) {
+  Materials(GlbBuilder& glb, const BakedNames& names, const GlbLook& look)
+      : glb_(glb), names_(names), index_(names.materials.size()), as_extension_(look.lightmap_extension) {
     if (look.lightmap.empty()) return;
     // No smaller copies: charts are but a texel apart in them.
-    const std::size_t sampler = glb.add("samplers", {{"magFilter", kLinear},
-                                                     {"minFilter", kLinear},
-                                                     {"wrapS", kClampToEdge},
-                                                     {"wrapT", kClampToEdge}});
+    const std::size_t sampler = glb.add(
+        "samplers", {{"magFilter", kLinear}, {"minFilter", kLinear}, {"wrapS", kClampToEdge}, {"wrapT", kClampToEdge}});
     const std::size_t image = glb.add("images", {{"uri", percent_encoded(look.lightmap)}});
     const std::size_t texture = glb.add("textures", {{"sampler", sampler}, {"source", image}});
     texture_ = {{"index", texture}, {"texCoord", 1}};
   }
   std::size_t operator()(std::uint32_t material) {
     std::optional<std::size_t>& index = index_[material];
-    if (!index) index = add(result_.materials[material], glows_[material]);
+    if (!index) index = add(names_.materials[material], names_.glows[material]);
     return *index;
   }
 
@@ -109,19 +104,19 @@ class Materials {
     base["baseColorFactor"] = {rho[0], rho[1], rho[2], 1};
     if (!texture_.empty() && !as_extension_) base["baseColorTexture"] = texture_;
     Json json = {{"pbrMetallicRoughness", std::move(base)}};
-    // Not both: a viewer that knows lightmaps lights the material by it alone, in a scene without lights.
-    json["extensions"][as_extension_ ? kLightmap : kUnlit] = as_extension_ ? texture_ : Json::object();
-    if (as_extension_) json["extensions"][kLightmap]["intensity"] = 1;
     if (!material.name.empty()) json["name"] = material.name;
-    glb_.use(as_extension_ ? kLightmap : kUnlit);
+    // Not both: a viewer that knows lightmaps lights the material by it alone, in a scene without lights.
+    if (!as_extension_) return add_unlit(glb_, std::move(json));
+    json["extensions"][kLightmap] = texture_;
+    json["extensions"][kLightmap]["intensity"] = 1;
+    glb_.use(kLightmap);
     return glb_.add("materials", std::move(json));
   }
 
-  static constexpr const char *kUnlit = "KHR_materials_unlit", *kLightmap = "MOZ_lightmap";
+  static constexpr const char* kLightmap = "MOZ_lightmap";
   static constexpr int kLinear = 9729, kClampToEdge = 33071;
   GlbBuilder& glb_;
-  const WrittenResult& result_;
-  std::vector<bool> glows_;
+  const BakedNames& names_;
   std::vector<std::optional<std::size_t>> index_;
   bool as_extension_;
   Json texture_;  ///< empty: none
@@ -129,10 +124,30 @@ class Materials {
 
 }  // namespace
 
-void write_baked_glb(AtomicFile& file, const BakedMesh& mesh, const WrittenResult& result, const GlbLook& look) {
-  GlbBuilder glb;
-  const Vec3 origin = near_origin(mesh.position);
-  Materials materials(glb, result, look);
+BakedNames names_of(const WrittenResult& result) {
+  return {result.surfaces, result.materials, glowing_materials(result)};
+}
+
+std::size_t add_unlit(GlbBuilder& glb, Json material) {
+  constexpr const char* kUnlit = "KHR_materials_unlit";
+  glb.use(kUnlit);
+  material["extensions"][kUnlit] = Json::object();
+  return glb.add("materials", std::move(material));
+}
+
+std::vector<float> shown_colours(const Field& shown, double exposure) {
+  std::vector<float> colours;
+  colours.reserve(3 * shown.size());
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const Spectrum colour = shown[i] * exposure;
+    for (int k = 0; k < 3; ++k) colours.push_back(static_cast<float>(std::clamp(colour[k], 0.0, 1.0)));
+  }
+  return colours;
+}
+
+std::vector<std::size_t> add_baked_nodes(GlbBuilder& glb, const BakedMesh& mesh, const BakedNames& names,
+                                         const GlbLook& look, const Vec3& origin) {
+  Materials materials(glb, names, look);
   Primitives primitives(glb, mesh, look, origin);
   std::vector<std::uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -148,11 +163,19 @@ void write_baked_glb(AtomicFile& file, const BakedMesh& mesh, const WrittenResul
           primitives.add(std::span(order).subspan(begin, end - begin), materials(mesh.material[order[begin]])));
     }
     Json shape = {{"primitives", std::move(list)}, {"extras", {{"exposure", look.exposure}}}}, node = Json::object();
-    if (const std::string& name = result.surfaces[surface]; !name.empty()) shape["name"] = node["name"] = name;
+    if (const std::string& name = names.surfaces[surface]; !name.empty()) shape["name"] = node["name"] = name;
     node["mesh"] = glb.add("meshes", std::move(shape));
     nodes.push_back(glb.add("nodes", std::move(node)));
   }
-  glb.show(nodes, y_up(origin));
+  return nodes;
+}
+
+void write_baked_glb(AtomicFile& file, const BakedMesh& mesh, const BakedNames& names, const GlbLook& look) {
+  GlbBuilder glb;
+  const Vec3 origin = near_origin(mesh.position);
+  std::vector<std::size_t> nodes = add_baked_nodes(glb, mesh, names, look, origin);
+  if (origin != Vec3{}) nodes = {glb.add_over(nodes, "origin", y_up(origin))};
+  glb.show(nodes);
   glb.write(file);
 }
 

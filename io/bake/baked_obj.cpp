@@ -45,7 +45,7 @@ class Lines {
 
 }  // namespace
 
-void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const WrittenResult& result, double exposure) {
+void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const BakedNames& names, double exposure) {
   Lines lines(file);
   lines << "# Clerestory: light as vertex colours, sRGB; metres";
   lines.end();
@@ -69,7 +69,7 @@ void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const WrittenResul
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t t = order[k];
     if (k == 0 || mesh.surface[t] != mesh.surface[order[k - 1]]) {
-      lines << "o " << result.surfaces[mesh.surface[t]];
+      lines << "o " << names.surfaces[mesh.surface[t]];
       lines.end();
     }
     lines << "f";

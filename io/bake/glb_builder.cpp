@@ -103,12 +103,17 @@ std::size_t GlbBuilder::add_indices(const std::vector<std::uint32_t>& corners, s
 
 std::size_t GlbBuilder::add_bytes(std::string_view bytes) { return add_view(bytes, 0); }
 
-void GlbBuilder::show(const std::vector<std::size_t>& nodes, const Vec3& origin) {
-  std::vector<std::size_t> top = nodes;
-  if (origin != Vec3{})
-    top = {add("nodes", {{"name", "origin"}, {"translation", {origin.x, origin.y, origin.z}}, {"children", nodes}})};
+std::size_t GlbBuilder::add_over(const std::vector<std::size_t>& nodes, const std::string& name, const Vec3& origin) {
+  Json node = Json::object();
+  if (!name.empty()) node["name"] = name;
+  if (origin != Vec3{}) node["translation"] = {origin.x, origin.y, origin.z};
+  if (!nodes.empty()) node["children"] = nodes;
+  return add("nodes", std::move(node));
+}
+
+void GlbBuilder::show(const std::vector<std::size_t>& nodes) {
   Json scene = Json::object();
-  if (!top.empty()) scene["nodes"] = top;
+  if (!nodes.empty()) scene["nodes"] = nodes;
   root_["scene"] = add("scenes", std::move(scene));
 }
 

@@ -24,6 +24,7 @@ class GlbBuilder {
   /// Adds to a list of the root ("nodes"), and returns its index there.
   std::size_t add(const char* list, Json element);
   Json& element(const char* list, std::size_t index) { return root_[list][index]; }
+  Json& root() { return root_; }
   /// Names an extension that the file uses.
   void use(const std::string& extension);
 
@@ -39,8 +40,10 @@ class GlbBuilder {
   /// The same as an accessor that is described already but for its view.
   std::size_t add_accessor(Json accessor, std::string_view bytes, int target);
 
-  /// The scene that is shown: its nodes, under one of that place where it is another than the identity.
-  void show(const std::vector<std::size_t>& nodes, const Vec3& origin);
+  /// A node over others, that moves them by so much.
+  std::size_t add_over(const std::vector<std::size_t>& nodes, const std::string& name, const Vec3& origin);
+  /// The scene that is shown.
+  void show(const std::vector<std::size_t>& nodes);
 
   /// throws  InputError when it is larger than 4 GiB.
   void write(AtomicFile& file);

@@ -11,6 +11,7 @@
 #include "io/find_file.h"
 #include "io/formats/add_mesh.h"
 #include "io/formats/gltf_file.h"
+#include "io/formats/gltf_nodes.h"
 #include "io/formats/ies.h"
 #include "io/text.h"
 #include "solver/model/error.h"
@@ -80,40 +81,6 @@ ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t 
   to.described = to.described || !to.material.receives();
   if (!to.described) to.material.reflectance = Spectrum(0.5);
   return to;
-}
-
-/// p -> T R S p, or the matrix, which glTF stores column by column.
-Affine read_transform(const GltfFile& file, const Json& node, const std::string& where) {
-  Affine a;
-  if (node.contains("matrix")) {
-    const std::vector<double> m = finite_numbers(file, node, "matrix", std::vector<double>(16), where);
-    for (std::size_t r = 0; r < 3; ++r) a.A[r] = {m[r], m[4 + r], m[8 + r]};
-    a.b = {m[12], m[13], m[14]};
-    return a;
-  }
-  const auto t = finite_numbers(file, node, "translation", {0, 0, 0}, where);
-  auto q = finite_numbers(file, node, "rotation", {0, 0, 0, 1}, where);
-  const auto s = finite_numbers(file, node, "scale", {1, 1, 1}, where);
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(norm > 1e-6 && norm < 1e6)) file.refuse(where + ".rotation is no unit quaternion");
-  const double x = q[0] / norm, y = q[1] / norm, z = q[2] / norm, w = q[3] / norm;
-  a.A = {Vec3{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-         Vec3{2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-         Vec3{2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
-  for (Vec3& row : a.A) row = {row.x * s[0], row.y * s[1], row.z * s[2]};
-  a.b = {t[0], t[1], t[2]};
-  return a;
-}
-
-/// Corners of the triangles of a strip or fan, in order, as a list.
-std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& in, std::size_t mode) {
-  if (mode == 4) return in;
-  std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i + 2 < in.size(); ++i) {
-    if (mode == 5) out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
-    if (mode == 6) out.insert(out.end(), {in[i + 1], in[i + 2], in[0]});
-  }
-  return out;
 }
 
 /// Of vertices that primitives share, each takes its own when they are few: a node that shows a triangle then costs
@@ -226,64 +193,16 @@ class GltfReader {
     return texture;
   }
 
-  /// Nodes of the scene that is shown, each under its parent; without a scene, all that nobody has as child.
   void read_nodes() {
-    struct Open {
-      std::size_t node;
-      Affine outer;
-    };
-    const Json& nodes = file_.list("nodes");
-    std::vector<bool> seen(nodes.size(), false);
-    std::vector<Open> open;
-    const std::vector<std::size_t> roots = root_nodes();
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, {}});
-    while (!open.empty()) {
-      const Open at = open.back();
-      open.pop_back();
-      const Json& node = file_.element("nodes", at.node);
-      const std::string where = text("nodes[", at.node, "]");
-      if (seen[at.node]) file_.refuse(where + " has two parents, or holds itself; nodes must form a tree");
-      seen[at.node] = true;
-      const Affine place = at.outer * read_transform(file_, node, where);
-      const std::vector<std::size_t> children = index_list(node, "children", where);
-      for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, place});
-      if (node.contains("mesh")) show_mesh(node, whole_number(file_, node, "mesh", 0, where), place, where);
+    visit_shown_nodes(file_, [&](const GltfNode& at) {
+      const Json& node = file_.element("nodes", at.index);
+      const std::string where = text("nodes[", at.index, "]");
+      if (node.contains("mesh")) show_mesh(node, whole_number(file_, node, "mesh", 0, where), at.place, where);
       const Json& light = extension(node, "KHR_lights_punctual");
-      if (light.contains("light")) add_light(whole_number(file_, light, "light", 0, where), place, node, where);
+      if (light.contains("light")) add_light(whole_number(file_, light, "light", 0, where), at.place, node, where);
       const Json& profile = extension(node, "EXT_lights_ies");
-      if (profile.contains("light")) add_light_profile(profile, place, node, where);
-    }
-  }
-
-  std::vector<std::size_t> index_list(const Json& object, const char* key, const std::string& where) {
-    std::vector<std::size_t> list;
-    const auto found = object.find(key);
-    if (found == object.end()) return list;
-    if (!found->is_array()) file_.refuse(text(where, ".", key, " must be an array"));
-    for (const Json& index : *found) {
-      if (!index.is_number_unsigned()) file_.refuse(text(where, ".", key, " must hold whole numbers"));
-      list.push_back(index.get<std::size_t>());
-    }
-    return list;
-  }
-
-  std::vector<std::size_t> root_nodes() {
-    if (!file_.list("scenes").empty()) {
-      const std::size_t scene = whole_number(file_, file_.root(), "scene", 0, file_.name());
-      return index_list(file_.element("scenes", scene), "nodes", text("scenes[", scene, "]"));
-    }
-    const std::size_t count = file_.list("nodes").size();
-    std::vector<bool> has_parent(count, false);
-    for (std::size_t n = 0; n < count; ++n) {
-      for (const std::size_t child : index_list(file_.element("nodes", n), "children", text("nodes[", n, "]"))) {
-        if (child < count) has_parent[child] = true;
-      }
-    }
-    std::vector<std::size_t> roots;
-    for (std::size_t n = 0; n < count; ++n) {
-      if (!has_parent[n]) roots.push_back(n);
-    }
-    return roots;
+      if (profile.contains("light")) add_light_profile(profile, at.place, node, where);
+    });
   }
 
   void show_mesh(const Json& node, std::size_t index, const Affine& place, const std::string& where) {
@@ -334,16 +253,7 @@ class GltfReader {
     LocalMesh mesh;
     const std::vector<Vec3>& vertices =
         file_.positions(whole_number(file_, *attributes, "POSITION", 0, where + ".attributes"));
-    std::vector<std::uint32_t> order;
-    if (primitive.contains("indices")) {
-      order = file_.indices(whole_number(file_, primitive, "indices", 0, where));
-    } else {
-      order.resize(vertices.size());
-      for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-    }
-    file_.spend((mode == 4 ? 1 : 3) * order.size(), where);
-    mesh.corner = as_triangles(order, mode);
-    mesh.corner.resize(mesh.corner.size() / 3 * 3);
+    mesh.corner = triangle_corners(file_, primitive, mode, vertices.size(), where);
     take_vertices(vertices, mesh);
     file_.spend(mesh.vertices.size(), where);
     for (std::size_t c = 3; c <= mesh.corner.size(); c += 3) mesh.face_begin.push_back(static_cast<std::uint32_t>(c));

@@ -102,7 +102,8 @@ class ChartFinder {
  private:
   const std::array<std::uint32_t, 3>& corners(std::uint32_t t) const { return result_.triangles[t]; }
 
-  /// Triangles from `seed` on over shared edges of one surface that `belongs` takes; `taken` tells who is, and learns it.
+  /// Triangles from `seed` on over shared edges of one surface that `belongs` takes; `taken` tells who is, and learns
+  /// it.
   template <class Belongs>
   Triangles grow(std::uint32_t seed, std::vector<std::uint8_t>& taken, const Belongs& belongs) const {
     Triangles grown{seed};
@@ -180,8 +181,9 @@ class ChartFinder {
     const Vec3 first = frame.t * r.axis[0] + frame.b * r.axis[1], second = frame.b * r.axis[0] - frame.t * r.axis[1];
     chart.origin = at + first * r.low[0] + second * r.low[1];
     const auto divide = [&](double length, const Vec3& axis, int& texels, Vec3& step) {
-      texels = std::max(piece.triangles.size() > 2 ? 4 : 2, 1 + static_cast<int>(std::min<double>(kBeyondAnyAtlas,
-                                                                  std::ceil(length * texels_per_metre_ - 1e-4))));
+      texels = std::max(
+          piece.triangles.size() > 2 ? 4 : 2,
+          1 + static_cast<int>(std::min<double>(kBeyondAnyAtlas, std::ceil(length * texels_per_metre_ - 1e-4))));
       step = axis * (length > 0 ? length / (texels - 1) : 1 / texels_per_metre_);
     };
     divide(r.high[0] - r.low[0], first, chart.width, chart.u);
@@ -193,8 +195,8 @@ class ChartFinder {
     std::vector<std::array<Texel, 3>> texels;
     for (const std::uint32_t t : chart.triangles) {
       const auto& [a, b, c] = corners(t);
-      texels.push_back({chart.texel_of(result_.points[a]), chart.texel_of(result_.points[b]),
-                        chart.texel_of(result_.points[c])});
+      texels.push_back(
+          {chart.texel_of(result_.points[a]), chart.texel_of(result_.points[b]), chart.texel_of(result_.points[c])});
     }
     return texels;
   }
@@ -202,7 +204,9 @@ class ChartFinder {
   Inspection inspect(const AtlasChart& chart, const std::vector<std::array<Texel, 3>>& texels) const {
     const int columns = chart.width - 1, rows = chart.height - 1;
     const auto n_cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-    const auto cell = [&](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x); };
+    const auto cell = [&](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x);
+    };
     Inspection found;
 
     std::vector<std::uint8_t> is_rim(n_cells, 0);
@@ -264,7 +268,8 @@ class ChartFinder {
     found.to_part.erase(std::unique(found.to_part.begin(), found.to_part.end()), found.to_part.end());
 
     // A cell's four texels and those around them.
-    std::vector<std::uint8_t> used(static_cast<std::size_t>(chart.width + 2) * static_cast<std::size_t>(chart.height + 2), 0);
+    std::vector<std::uint8_t> used(
+        static_cast<std::size_t>(chart.width + 2) * static_cast<std::size_t>(chart.height + 2), 0);
     for (int y = 0; y < rows; ++y)
       for (int x = 0; x < columns; ++x)
         if (touched[cell(x, y)])
@@ -283,7 +288,8 @@ class ChartFinder {
     for (std::size_t i = 0; i < here.size(); ++i)
       for (const std::uint32_t t : across_[chart.triangles[here[i]]]) {
         if (t == kNone) continue;
-        const auto place = std::lower_bound(chart.triangles.begin(), chart.triangles.end(), t) - chart.triangles.begin();
+        const auto place =
+            std::lower_bound(chart.triangles.begin(), chart.triangles.end(), t) - chart.triangles.begin();
         const auto found = std::lower_bound(here.begin(), here.end(), static_cast<std::uint32_t>(place));
         if (found != here.end() && *found == place) sets.join(i, static_cast<std::size_t>(found - here.begin()));
       }
@@ -302,7 +308,8 @@ class ChartFinder {
         const auto [left, right] = x_range(t, y + 0.5, y + 0.5);
         for (int x = std::max(0, static_cast<int>(left - 0.5)); x < columns && x + 0.5 < right - 1e-4; ++x) {
           if (x + 0.5 <= left + 1e-4) continue;
-          std::uint32_t& first = owner[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x)];
+          std::uint32_t& first =
+              owner[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x)];
           if (first == kNone)
             first = i;
           else if (first != i)

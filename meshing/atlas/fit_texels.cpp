@@ -17,7 +17,7 @@ constexpr double kPointWeight = 0.1;  // of one on a point
 constexpr double kDark = 1e-3;        // of the chart's largest value: below it errors count as if it were this
 constexpr double kStay = 1e-4;        // weight of x0, as a share of the samples'
 constexpr int kRounds = 60;
-constexpr double kSolved = 1e-7;      // residual, as a share of the first
+constexpr double kSolved = 1e-7;  // residual, as a share of the first
 
 /// Value of a channel on a triangle: at + x grad_x + y grad_y [per texel].
 struct Plane {
@@ -52,13 +52,18 @@ Plane plane_of(const std::array<Texel, 3>& t, const std::array<double, 3>& f) {
 class Equations {
  public:
   Equations(int width, int height, int channels)
-      : width_(static_cast<std::size_t>(width)), height_(static_cast<std::size_t>(height)),
-        channels_(static_cast<std::size_t>(channels)), row_(width_ * height_), start_weight_(row_.size(), 0.0),
-        right_side_(row_.size() * channels_, 0.0), start_(right_side_.size(), 0.0) {}
+      : width_(static_cast<std::size_t>(width)),
+        height_(static_cast<std::size_t>(height)),
+        channels_(static_cast<std::size_t>(channels)),
+        row_(width_ * height_),
+        start_weight_(row_.size(), 0.0),
+        right_side_(row_.size() * channels_, 0.0),
+        start_(right_side_.size(), 0.0) {}
 
   /// A sample at (x, y): its values, and the planes that they are of.
   void add(double x, double y, double weight, std::span<const double> f, std::span<const Plane> planes) {
-    const auto i = std::min(static_cast<std::size_t>(x), width_ - 2), j = std::min(static_cast<std::size_t>(y), height_ - 2);
+    const auto i = std::min(static_cast<std::size_t>(x), width_ - 2),
+               j = std::min(static_cast<std::size_t>(y), height_ - 2);
     const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
     const std::size_t at = j * width_ + i;
     const std::array<std::size_t, 4> texel{at, at + 1, at + width_, at + width_ + 1};
@@ -88,7 +93,8 @@ class Equations {
       const std::size_t i = at + k % 2 + k / 2 * width_;
       start_weight_[i] += kTouch;
       for (std::size_t c = 0; c < channels_; ++c)
-        start_[i * channels_ + c] += kTouch * planes[c].beyond(column + static_cast<double>(k % 2), row + static_cast<double>(k / 2));
+        start_[i * channels_ + c] +=
+            kTouch * planes[c].beyond(column + static_cast<double>(k % 2), row + static_cast<double>(k / 2));
     }
   }
 

@@ -93,11 +93,16 @@ std::vector<std::size_t> largest_first(const std::vector<AtlasChart>& charts) {
 }
 
 /// What lies between charts: means of what is near, so that smaller copies of the picture do not darken at borders.
-void fill_between(int width, int height, std::size_t channels, std::vector<std::uint8_t>& is_known, std::vector<float>& value) {
+void fill_between(int width, int height, std::size_t channels, std::vector<std::uint8_t>& is_known,
+                  std::vector<float>& value) {
   if (width < 2 && height < 2) return;
   const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
-  const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
-  const auto half_at = [&](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(half_width) + static_cast<std::size_t>(x); };
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  };
+  const auto half_at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(half_width) + static_cast<std::size_t>(x);
+  };
   std::vector<std::uint8_t> half_known(static_cast<std::size_t>(half_width) * static_cast<std::size_t>(half_height), 0);
   std::vector<float> half(half_known.size() * channels, 0.f);
   std::size_t unknown = 0;
@@ -108,7 +113,8 @@ void fill_between(int width, int height, std::size_t channels, std::vector<std::
         for (int i = 2 * x; i < std::min(width, 2 * x + 2); ++i)
           if (is_known[at(i, j)]) {
             ++count;
-            for (std::size_t c = 0; c < channels; ++c) half[half_at(x, y) * channels + c] += value[at(i, j) * channels + c];
+            for (std::size_t c = 0; c < channels; ++c)
+              half[half_at(x, y) * channels + c] += value[at(i, j) * channels + c];
           } else {
             ++unknown;
           }
@@ -140,8 +146,9 @@ void paint(const WrittenResult& result, const Field& value, LightmapAtlas& atlas
         for (int x = -AtlasChart::kGutter; x < chart.width + AtlasChart::kGutter; ++x) {
           const auto there = static_cast<std::size_t>(chart.y + y) * static_cast<std::size_t>(atlas.width) +
                              static_cast<std::size_t>(chart.x + x);
-          const auto here = static_cast<std::size_t>(std::clamp(y, 0, chart.height - 1)) * static_cast<std::size_t>(chart.width) +
-                            static_cast<std::size_t>(std::clamp(x, 0, chart.width - 1));
+          const auto here =
+              static_cast<std::size_t>(std::clamp(y, 0, chart.height - 1)) * static_cast<std::size_t>(chart.width) +
+              static_cast<std::size_t>(std::clamp(x, 0, chart.width - 1));
           is_known[there] = 1;
           for (std::size_t c = 0; c < channels; ++c) atlas.value[there * channels + c] = texel[here * channels + c];
         }

@@ -80,20 +80,25 @@ AtlasError measure_atlas(const WrittenResult& result, const Field& value, const 
           }
           return error;
         };
-        // Points that halve each edge often enough: evenly over the triangle, at the middles of its parts and of theirs.
+        // Points that halve each edge often enough: evenly over the triangle, at the middles of its parts and of
+        // theirs.
         double longest = 0;
         for (std::size_t k = 0; k < 3; ++k) {
           const auto& a = uv[k];
           const auto& b = uv[(k + 1) % 3];
-          longest = std::max(longest, std::hypot(double{a[0] - b[0]} * atlas.width, double{a[1] - b[1]} * atlas.height));
+          longest =
+              std::max(longest, std::hypot(double{a[0] - b[0]} * atlas.width, double{a[1] - b[1]} * atlas.height));
         }
         const int parts = std::clamp(static_cast<int>(std::ceil(1.4 * longest)), 1, 1000);
-        const double area = length(cross(corner[1] - corner[0], corner[2] - corner[0])) / 2 / (double{1} * parts * parts);
+        const double area =
+            length(cross(corner[1] - corner[0], corner[2] - corner[0])) / 2 / (double{1} * parts * parts);
         for (int i = 0; i < parts; ++i)
           for (int j = 0; j < parts - i; ++j) {
-            found.histogram.add(error_at((i + 1. / 3) / parts, (j + 1. / 3) / parts, (parts - i - j - 2. / 3) / parts), area);
+            found.histogram.add(error_at((i + 1. / 3) / parts, (j + 1. / 3) / parts, (parts - i - j - 2. / 3) / parts),
+                                area);
             if (i + j + 1 < parts)
-              found.histogram.add(error_at((i + 2. / 3) / parts, (j + 2. / 3) / parts, (parts - i - j - 4. / 3) / parts), area);
+              found.histogram.add(
+                  error_at((i + 2. / 3) / parts, (j + 2. / 3) / parts, (parts - i - j - 4. / 3) / parts), area);
           }
         for (int i = 0; i < parts; ++i) {
           const double s = static_cast<double>(i) / parts;

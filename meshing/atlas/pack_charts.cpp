@@ -4,17 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wunused-function"
 #define STB_RECT_PACK_IMPLEMENTATION
 #define STBRP_STATIC
 #include <stb/stb_rect_pack.h>
-#pragma GCC diagnostic pop
 
 #include "solver/model/parallel.h"
 

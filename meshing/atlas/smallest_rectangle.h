@@ -7,7 +7,7 @@
 namespace clerestory {
 
 struct TurnedRectangle {
-  std::array<double, 2> axis{1, 0};  ///< unit, along the first side; the second is turned to the left of it
+  std::array<double, 2> axis{1, 0};     ///< unit, along the first side; the second is turned to the left of it
   std::array<double, 2> low{}, high{};  ///< along both axes
 };
 

@@ -17,9 +17,9 @@ namespace clerestory {
 struct AtlasChart {
   std::vector<std::uint32_t> triangles;
   std::uint32_t surface = 0;
-  Vec3 normal;     ///< unit, of the lit side
-  Vec3 origin;     ///< centre of texel (x, y), scene's frame [m]
-  Vec3 u, v;       ///< from one texel to the next in x and in y [m]; at right angles; u x v is along the normal
+  Vec3 normal;            ///< unit, of the lit side
+  Vec3 origin;            ///< centre of texel (x, y), scene's frame [m]
+  Vec3 u, v;              ///< from one texel to the next in x and in y [m]; at right angles; u x v is along the normal
   bool is_planar = true;  ///< all triangles lie in the plane of u and v; else they are projected on it
   int width = 2, height = 2;
   int x = 0, y = 0;
@@ -38,19 +38,19 @@ struct AtlasChart {
 /// How far lookups are from the values that they are made of: |lookup - value| / value, of values below a thousandth of
 /// the surface's largest that thousandth instead.
 struct AtlasError {
-  double share_within_1_percent = 1;        ///< of the area
-  double p95 = 0, p99 = 0, worst = 0;       ///< by area; at the worst of all points that were looked at
+  double share_within_1_percent = 1;   ///< of the area
+  double p95 = 0, p99 = 0, worst = 0;  ///< by area; at the worst of all points that were looked at
   std::uint32_t worst_surface = 0;
-  Vec3 worst_place;                         ///< scene's frame [m]
+  Vec3 worst_place;  ///< scene's frame [m]
 };
 
 struct LightmapAtlas {
   int width = 0, height = 0;
   double texels_per_metre = 0;
   std::vector<AtlasChart> charts;
-  std::vector<std::uint32_t> chart_of;                      ///< N, of each triangle
-  std::vector<std::array<std::array<float, 2>, 3>> uv;      ///< N, of its corners, in [0, 1], v down
-  static constexpr int kIlluminance = 0, kShown = 1;  ///< channels: [lx]; BakedMesh::shown, one or three [W/m2]
+  std::vector<std::uint32_t> chart_of;                  ///< N, of each triangle
+  std::vector<std::array<std::array<float, 2>, 3>> uv;  ///< N, of its corners, in [0, 1], v down
+  static constexpr int kIlluminance = 0, kShown = 1;    ///< channels: [lx]; BakedMesh::shown, one or three [W/m2]
   int channels = 1;
   std::vector<float> value;  ///< width x height x channels, row by row from the top
   double used = 0;           ///< share of the texels that a lookup reaches, or that lie beside such

@@ -84,7 +84,7 @@ TEST(FindCharts, ACylinderIsCutIntoStripsThatAreNearlyFlat) {
       72, 6, one);
   const auto charts = find_charts(column.result, 20);
   expect_sound(column.result, charts, 20);
-  EXPECT_GE(charts.size(), 7u);   // 50 degrees each
+  EXPECT_GE(charts.size(), 7u);  // 50 degrees each
   EXPECT_LE(charts.size(), 16u);
 }
 
@@ -115,7 +115,8 @@ TEST(FindCharts, ASpiralRampLiesOverItselfInNoChart) {
 TEST(FindCharts, AnLShapedFloorIsCutSoThatItsRectanglesAreFull) {
   LitSurfaces floor;
   floor.add_surface("floor");
-  floor.add_grid(rectangle({0, 0, 0}, {10, 0, 0}, {0, 10, 0}), 20, 20, one, [](int i, int j) { return i < 6 || j < 6; });
+  floor.add_grid(rectangle({0, 0, 0}, {10, 0, 0}, {0, 10, 0}), 20, 20, one,
+                 [](int i, int j) { return i < 6 || j < 6; });
   const auto charts = find_charts(floor.result, 20);
   expect_sound(floor.result, charts, 20);
   double used = 0, all = 0;

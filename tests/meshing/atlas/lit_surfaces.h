@@ -43,8 +43,9 @@ class LitSurfaces {
 
   /// columns x rows squares, each of two triangles, of a surface that place(s, t) bends, s and t in [0, 1], where
   /// keep(column, row) says so; points of neighbours are shared.
-  void add_grid(const std::function<Vec3(double, double)>& place, int columns, int rows, const Light& lux,
-                const std::function<bool(int, int)>& keep = [](int, int) { return true; }) {
+  void add_grid(
+      const std::function<Vec3(double, double)>& place, int columns, int rows, const Light& lux,
+      const std::function<bool(int, int)>& keep = [](int, int) { return true; }) {
     const auto first = static_cast<std::uint32_t>(result.points.size());
     for (int j = 0; j <= rows; ++j)
       for (int i = 0; i <= columns; ++i) {

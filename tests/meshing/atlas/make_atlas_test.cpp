@@ -51,7 +51,9 @@ TEST(MakeAtlas, ALinearFieldIsLookedUpAsItIs) {
                     room.add_point({0.4, 1.7, 4}, lux({0.4, 1.7, 4})));
   const LightmapAtlas atlas = make_atlas(room.result, 15);
   EXPECT_LT(worst_of(room.result, atlas), 2e-5);  // float, and gradients of a texel times uv's rounding
-  EXPECT_LT(atlas.error.worst, 2e-5) << atlas.error.worst_place.x << " " << atlas.error.worst_place.y << " " << atlas.error.worst_place.z << " " << atlas.error.worst_surface << " " << atlas.width << " " << atlas.error.p99;
+  EXPECT_LT(atlas.error.worst, 2e-5) << atlas.error.worst_place.x << " " << atlas.error.worst_place.y << " "
+                                     << atlas.error.worst_place.z << " " << atlas.error.worst_surface << " "
+                                     << atlas.width << " " << atlas.error.p99;
   EXPECT_EQ(atlas.error.share_within_1_percent, 1);
 }
 
@@ -85,9 +87,12 @@ TEST(MakeAtlas, TwoSidesOfAThinWallOnOneFloorDoNotMix) {
   floor.add_surface("floor");
   constexpr int n = 100;
   const auto is_wall = [](int i, int j) { return i == 50 && j < 60; };
-  floor.add_grid(rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}), n, n / 2,
-                 [](const Vec3& p) { return p.x > 2.03 && p.y < 2.3 ? 1000.0 : p.y < 2.3 ? 1 : 100; },
-                 [&](int i, int j) { return !is_wall(i, 2 * j); });
+  floor.add_grid(
+      rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}), n, n / 2,
+      [](const Vec3& p) { return p.x > 2.03 && p.y < 2.3 ? 1000.0
+                                 : p.y < 2.3             ? 1
+                                                         : 100; },
+      [&](int i, int j) { return !is_wall(i, 2 * j); });
   const LightmapAtlas atlas = make_atlas(floor.result, 20);
   for_lookups(floor.result, atlas, [&](std::size_t t, const auto&, double looked_up, double linear) {
     double y = 0;
@@ -138,7 +143,8 @@ TEST(MakeAtlas, UsesThreeQuartersOfThePictureForARoomWithFurniture) {
     const Vec3 at{1.0 * (desk % 4), 1.3 * (desk / 4), 0.7};
     room.add_grid(rectangle(at, {0.7, 0, 0}, {0, 0.5, 0}), 3, 2, lux);
     for (int leg = 0; leg < 4; ++leg)
-      room.add_grid(rectangle(at + Vec3{0.65 * (leg % 2), 0.45 * (leg / 2), -0.7}, {0.04, 0, 0}, {0, 0, 0.7}), 1, 2, lux);
+      room.add_grid(rectangle(at + Vec3{0.65 * (leg % 2), 0.45 * (leg / 2), -0.7}, {0.04, 0, 0}, {0, 0, 0.7}), 1, 2,
+                    lux);
   }
   room.add_surface("gable");
   room.add_triangle(room.add_point({0, 0, 3}, 5), room.add_point({7, 0, 3}, 5), room.add_point({3.5, 0, 5}, 5));
@@ -185,8 +191,11 @@ TEST(MakeAtlas, RefusesWhatIsLargerThanAnyPictureAndSaysWhatFits) {
 TEST(MakeAtlas, IsTheSameForAnyNumberOfThreads) {
   LitSurfaces column;
   column.add_surface("column");
-  column.add_grid([](double s, double t) { return Vec3{std::cos(6 * s), std::sin(6 * s), 3 * t}; }, 60, 9,
-                  [](const Vec3& p) { return std::exp(2 * p.x + p.z); });
+  column.add_grid(
+      [](double s, double t) {
+        return Vec3{std::cos(6 * s), std::sin(6 * s), 3 * t};
+      },
+      60, 9, [](const Vec3& p) { return std::exp(2 * p.x + p.z); });
   set_thread_count(1);
   const LightmapAtlas one = make_atlas(column.result, 20);
   set_thread_count(4);
@@ -201,8 +210,11 @@ TEST(MakeAtlas, IsTheSameForAnyNumberOfThreads) {
 TEST(WithAtlas, SplitsVerticesBetweenChartsAndKeepsTheirLight) {
   LitSurfaces column;
   column.add_surface("column");
-  column.add_grid([](double s, double t) { return Vec3{std::cos(6 * s), std::sin(6 * s), 3 * t}; }, 60, 9,
-                  [](const Vec3& p) { return 100 + p.z; });
+  column.add_grid(
+      [](double s, double t) {
+        return Vec3{std::cos(6 * s), std::sin(6 * s), 3 * t};
+      },
+      60, 9, [](const Vec3& p) { return 100 + p.z; });
   const LightmapAtlas atlas = make_atlas(column.result, 20);
   const BakedMesh whole = baked_points(column.result), split = with_atlas(whole, atlas);
   EXPECT_GT(split.position.size(), whole.position.size());

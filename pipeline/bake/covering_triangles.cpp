@@ -88,9 +88,10 @@ class Cover {
         const Vec3 x = centroid(t), n = unit_normal(t);
         double nearest = tolerance_;
         faces.visit(Box{x, x}.grown(tolerance_), [&](std::uint32_t f) {
-          const double cosine = dot(unit_normal(model_[f]), n);
           const double away = length(nearest_point(model_[f], x) - x);
-          if (std::abs(cosine) < kCovers || away > nearest || (away == nearest && owner[i] < 2 * f)) return;
+          if (away > nearest || (away == nearest && owner[i] < 2 * f)) return;
+          const double cosine = dot(unit_normal(model_[f]), n);
+          if (std::abs(cosine) < kCovers) return;
           nearest = away;
           owner[i] = 2 * f + (cosine < 0 ? 1 : 0);
         });
@@ -130,9 +131,12 @@ class Cover {
     std::array<Found, 3> found;
     tree_.visit(Box{q, q}.grown(tolerance_), [&](std::uint32_t i) {
       const Triangle t = triangle(i);
-      const Vec3 n = unit_normal(t), d = nearest_point(t, q) - q;
-      const double cosine = dot(n, normal), height = std::abs(dot(d, n)), away = length(d);
-      if (std::abs(cosine) < kCovers || away > tolerance_) return;
+      const Vec3 d = nearest_point(t, q) - q;
+      const double away = length(d);
+      if (away > tolerance_) return;
+      const Vec3 n = unit_normal(t);
+      const double cosine = dot(n, normal), height = std::abs(dot(d, n));
+      if (std::abs(cosine) < kCovers) return;
       const double beside = std::sqrt(std::max(0.0, away * away - height * height));
       if (beside > 0.3 * off_rim + height) return;
       found[i >= lit_count_ ? 2 : cosine > 0 ? 0 : 1].take(i, away);

@@ -46,7 +46,8 @@ bool jumps(const Spectrum& a, const Spectrum& b) {
 
 class PartLight {
  public:
-  PartLight(const WrittenResult& result, const Field& shown, const ModelPart& part, std::span<const Covering> covering)
+  PartLight(const WrittenResult& result, const Field& shown, const ModelPart& part,
+            std::span<const CornerCover> covering)
       : result_(result),
         E_(result.of_points.at("irradiance")),
         lux_(result.of_points.at("illuminance").value),
@@ -108,7 +109,7 @@ class PartLight {
 
   Light light_of(CornerId c) const {
     Light light;
-    const Covering& by = covering_[c.value];
+    const CornerCover& by = covering_[c.value];
     if (!by.is_lit()) return light;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t p = result_.triangles[by.triangle][i];
@@ -162,7 +163,7 @@ class PartLight {
   const std::vector<float>& lux_;
   const Field& shown_;
   const ModelPart& part_;
-  std::span<const Covering> covering_;
+  std::span<const CornerCover> covering_;
   std::vector<std::uint32_t> begin_, corners_;  ///< by vertex
   std::vector<std::uint32_t> place_;            ///< of each corner: its vertex in the lit part
   LitPart lit_;

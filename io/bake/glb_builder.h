@@ -55,7 +55,7 @@ class GlbBuilder {
   std::string binary_;
 };
 
-/// From the scene's frame to that of glTF, y up: the inverse of (x, y, z) -> (x, -z, y).
-inline constexpr Vec3 y_up(const Vec3& p) { return {p.x, p.z, -p.y}; }
+/// From the scene's frame to that of glTF, y up: the inverse of (x, y, z) -> (x, -z, y). No -0.
+inline constexpr Vec3 y_up(const Vec3& p) { return {p.x, p.z, 0.0 - p.y}; }
 
 }  // namespace clerestory

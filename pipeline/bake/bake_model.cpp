@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "io/input_file.h"
 #include "pipeline/bake/light_on_model.h"
 #include "pipeline/bake/polygon_parts.h"
 #include "solver/model/bake_points.h"
@@ -61,7 +62,7 @@ BakedScene bake_scene(const WrittenResult& result, const Scene& scene) {
   std::vector<std::size_t> model_of(scene.surfaces.size(), 0);
   for (const PlacedModel& model : scene.models) {
     LitModelFile& lit = baked.models.emplace_back();
-    lit.name = model.file.stem().string();
+    lit.name = short_name(model.file);
     lit.gltf = read_gltf_again(model);
     for (std::size_t s = model.first_surface; s < model.first_surface + model.surface_count; ++s) {
       as_polygons[s] = !lit.gltf;

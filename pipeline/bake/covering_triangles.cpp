@@ -81,16 +81,17 @@ class Cover {
   /// Of each side of a face the triangles of the result whose middle lies on it.
   void find_owners(double& missing_share) {
     const BoxTree faces(model_.size(), [this](std::uint32_t f) { return box_of(model_[f]); });
-    std::vector<std::uint32_t> owner(lit_count_, Covering::kNone);
+    std::vector<std::uint32_t> owner(lit_count_, CornerCover::kNone);
     parallel_for(lit_count_, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Triangle t = triangle(static_cast<std::uint32_t>(i));
         const Vec3 x = centroid(t), n = unit_normal(t);
         double nearest = tolerance_;
         faces.visit(Box{x, x}.grown(tolerance_), [&](std::uint32_t f) {
-          const double cosine = dot(unit_normal(model_[f]), n);
           const double away = length(nearest_point(model_[f], x) - x);
-          if (std::abs(cosine) < kCovers || away > nearest || (away == nearest && owner[i] < 2 * f)) return;
+          if (away > nearest || (away == nearest && owner[i] < 2 * f)) return;
+          const double cosine = dot(unit_normal(model_[f]), n);
+          if (std::abs(cosine) < kCovers) return;
           nearest = away;
           owner[i] = 2 * f + (cosine < 0 ? 1 : 0);
         });
@@ -102,7 +103,7 @@ class Cover {
       const Triangle t = triangle(static_cast<std::uint32_t>(i));
       const double area = length(cross(t[1] - t[0], t[2] - t[0]));
       all += area;
-      if (owner[i] == Covering::kNone)
+      if (owner[i] == CornerCover::kNone)
         missing += area;
       else
         ++begin_[owner[i] + 1];
@@ -112,11 +113,11 @@ class Cover {
     on_side_.resize(begin_.back());
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
     for (std::size_t i = 0; i < lit_count_; ++i)
-      if (owner[i] != Covering::kNone) on_side_[next[owner[i]]++] = static_cast<std::uint32_t>(i);
+      if (owner[i] != CornerCover::kNone) on_side_[next[owner[i]]++] = static_cast<std::uint32_t>(i);
   }
 
   struct Found {
-    std::uint32_t triangle = Covering::kNone;
+    std::uint32_t triangle = CornerCover::kNone;
     double away = std::numeric_limits<double>::infinity();
     /// Of equally near ones the first, as the order of visits is the tree's.
     void take(std::uint32_t i, double d) {
@@ -130,9 +131,12 @@ class Cover {
     std::array<Found, 3> found;
     tree_.visit(Box{q, q}.grown(tolerance_), [&](std::uint32_t i) {
       const Triangle t = triangle(i);
-      const Vec3 n = unit_normal(t), d = nearest_point(t, q) - q;
-      const double cosine = dot(n, normal), height = std::abs(dot(d, n)), away = length(d);
-      if (std::abs(cosine) < kCovers || away > tolerance_) return;
+      const Vec3 d = nearest_point(t, q) - q;
+      const double away = length(d);
+      if (away > tolerance_) return;
+      const Vec3 n = unit_normal(t);
+      const double cosine = dot(n, normal), height = std::abs(dot(d, n));
+      if (std::abs(cosine) < kCovers) return;
       const double beside = std::sqrt(std::max(0.0, away * away - height * height));
       if (beside > 0.3 * off_rim + height) return;
       found[i >= lit_count_ ? 2 : cosine > 0 ? 0 : 1].take(i, away);
@@ -140,29 +144,29 @@ class Cover {
     return found;
   }
 
-  void cover(std::size_t f, std::span<Covering> covering) const {
+  void cover(std::size_t f, std::span<CornerCover> covering) const {
     const Triangle& face = model_[f];
     const Vec3 normal = unit_normal(face), middle = centroid(face);
     if (!(length(normal) > 0)) return;  // dark
     std::array<std::array<std::uint32_t, 3>, 2> by;
-    by[0].fill(Covering::kNone), by[1].fill(Covering::kNone);
+    by[0].fill(CornerCover::kNone), by[1].fill(CornerCover::kNone);
     int panes = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 inwards = middle - face[k];
       const Vec3 q = face[k] + inwards * std::min(0.5, 2 * tolerance_ / length(inwards));
       const auto found = at(q, normal, off_rim(face, q));
       for (std::size_t side = 0; side < 2; ++side) by[side][k] = found[side].triangle;
-      const bool on_pane = found[2].triangle != Covering::kNone;
-      panes += on_pane && by[0][k] == Covering::kNone && by[1][k] == Covering::kNone;
+      const bool on_pane = found[2].triangle != CornerCover::kNone;
+      panes += on_pane && by[0][k] == CornerCover::kNone && by[1][k] == CornerCover::kNone;
     }
     if (panes >= 2) {
-      std::ranges::fill(covering, Covering{Covering::kPane, {}});
+      std::ranges::fill(covering, CornerCover{CornerCover::kPane, {}});
       return;
     }
     for (std::size_t side = 0; side < 2; ++side) {
       fill_gaps(face, 2 * f + side, by[side]);
       for (std::size_t k = 0; k < 3; ++k) {
-        if (by[side][k] == Covering::kNone) continue;
+        if (by[side][k] == CornerCover::kNone) continue;
         const Triangle t = triangle(by[side][k]);
         covering[3 * side + k] = {by[side][k], weights(t, nearest_point(t, face[k]))};
       }
@@ -173,14 +177,14 @@ class Cover {
   void fill_gaps(const Triangle& face, std::size_t side, std::array<std::uint32_t, 3>& by) const {
     const std::array<std::uint32_t, 3> found = by;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (found[k] != Covering::kNone) continue;
+      if (found[k] != CornerCover::kNone) continue;
       Found nearest;
       const auto look = [&](std::uint32_t i) {
         nearest.take(i, length(nearest_point(triangle(i), face[k]) - face[k]));
       };
       for (std::uint32_t s = begin_[side]; s < begin_[side + 1]; ++s) look(on_side_[s]);
       for (const std::uint32_t i : found)
-        if (i != Covering::kNone) look(i);
+        if (i != CornerCover::kNone) look(i);
       by[k] = nearest.triangle;
     }
   }

@@ -12,7 +12,7 @@
 namespace clerestory {
 
 /// What covers a corner of one side of a face.
-struct Covering {
+struct CornerCover {
   static constexpr std::uint32_t kNone = 0xffffffff, kPane = 0xfffffffe;
   std::uint32_t triangle = kNone;  ///< of the result
   std::array<float, 3> weight{};   ///< of its points, sum 1
@@ -24,7 +24,7 @@ struct Covering {
 struct CoveredModel {
   /// 6 a triangle of the model: the corners of its front, then of its back. A side has either no covering corner or
   /// all three; a pane's are all kPane.
-  std::vector<Covering> covering;
+  std::vector<CornerCover> covering;
   double missing_share = 0;  ///< of the result's area, that is on no triangle of the model [1]
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "pipeline/bake/covering_triangles.h"
@@ -12,20 +11,25 @@
 namespace clerestory {
 namespace {
 
-/// One corner of one side of a triangle of a part.
-struct Corner {
-  std::uint32_t triangle, k;  ///< of the part, and its corner there
-  bool is_back = false;
-  Vec3 normal;  ///< of the side, times the area of the facet
+/// A corner of one side of a triangle, by number: 6 a triangle, those of the front first.
+struct CornerId {
+  std::uint32_t value;
+  std::uint32_t triangle() const { return value / 6; }
+  bool is_back() const { return value % 6 >= 3; }
+  std::uint32_t k() const { return value % 3; }
+};
+
+struct Light {
   Spectrum E, shown;
   double lux = 0;
 };
 
 /// The corners at a vertex that share one vertex of the lit part.
 struct Group {
-  std::vector<std::size_t> corners;
-  Vec3 normal;
-  Spectrum E, shown;  ///< of the first
+  std::vector<CornerId> corners;
+  Vec3 normal;       ///< of the facets, by area
+  Light first, sum;  ///< of the first corner; by area
+  double area = 0;
   bool is_back = false;
 };
 
@@ -42,118 +46,127 @@ bool jumps(const Spectrum& a, const Spectrum& b) {
 
 class PartLight {
  public:
-  PartLight(const WrittenResult& result, const Field& shown)
+  PartLight(const WrittenResult& result, const Field& shown, const ModelPart& part,
+            std::span<const CornerCover> covering)
       : result_(result),
         E_(result.of_points.at("irradiance")),
         lux_(result.of_points.at("illuminance").value),
-        shown_(shown) {}
+        shown_(shown),
+        part_(part),
+        covering_(covering),
+        place_(covering.size(), kNone) {}
 
-  /// covering  of each side and corner of the part's triangles: 6 a triangle, front first.
-  LitPart operator()(const ModelPart& part, std::span<const Covering> covering) {
-    LitPart lit;
-    lit.E.channels = lit.shown.channels = E_.components;
-    std::vector<Corner> corners = corners_of(part, covering, lit);
-    std::ranges::stable_sort(corners, {}, [&](const Corner& c) { return part.triangles[c.triangle][c.k]; });
-
-    std::vector<std::uint32_t> place(corners.size());  // of each corner: its vertex
+  LitPart operator()() {
+    lit_.E.channels = lit_.shown.channels = E_.components;
+    find_shown_sides();
     std::vector<std::pair<std::uint32_t, Group>> split;
-    for (std::size_t begin = 0, end = 0; begin < corners.size(); begin = end) {
-      const std::uint32_t vertex = part.triangles[corners[begin].triangle][corners[begin].k];
-      while (end < corners.size() && part.triangles[corners[end].triangle][corners[end].k] == vertex) ++end;
-      std::vector<Group> groups = groups_of(corners, begin, end, part.sharp_cosine);
-      add_vertex(lit, vertex, groups.front(), corners, place);
-      for (std::size_t g = 1; g < groups.size(); ++g) split.push_back({vertex, std::move(groups[g])});
+    std::vector<Group> groups;
+    for (std::uint32_t v = 0; v < part_.position.size(); ++v) {
+      groups.clear();
+      for (std::uint32_t c = begin_[v]; c < begin_[v + 1]; ++c) put(CornerId{corners_[c]}, groups);
+      if (groups.empty()) continue;
+      add_vertex(v, groups.front());
+      for (std::size_t g = 1; g < groups.size(); ++g) split.push_back({v, std::move(groups[g])});
     }
-    for (const auto& [vertex, group] : split) add_vertex(lit, vertex, group, corners, place);
-
-    // Triangles in the part's order, the front before the back.
-    std::vector<std::size_t> order(corners.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::size_t i) {
-      return std::tuple(corners[i].triangle, corners[i].is_back, corners[i].is_back ? 2 - corners[i].k : corners[i].k);
-    };
-    std::ranges::sort(order, {}, key);
-    for (std::size_t i = 0; i + 2 < order.size(); i += 3)
-      lit.triangles.push_back({place[order[i]], place[order[i + 1]], place[order[i + 2]]});
-    return lit;
+    for (const auto& [vertex, group] : split) add_vertex(vertex, group);
+    for (std::size_t c = 0; c < place_.size(); c += 3) {
+      if (place_[c] == kNone) continue;
+      if (c % 6 == 0)
+        lit_.triangles.push_back({place_[c], place_[c + 1], place_[c + 2]});
+      else
+        lit_.triangles.push_back({place_[c + 2], place_[c + 1], place_[c]});
+    }
+    return std::move(lit_);
   }
 
  private:
-  std::vector<Corner> corners_of(const ModelPart& part, std::span<const Covering> covering, LitPart& lit) const {
-    std::vector<Corner> corners;
-    corners.reserve(3 * part.triangles.size());
-    for (std::uint32_t t = 0; t < part.triangles.size(); ++t) {
-      const std::span<const Covering> of_triangle = covering.subspan(6 * t, 6);
-      if (of_triangle.front().is_pane()) continue;
-      const auto& v = part.triangles[t];
-      const Vec3 normal = cross(part.position[v[1]] - part.position[v[0]], part.position[v[2]] - part.position[v[0]]);
-      const auto is_lit = [&](std::size_t side) { return of_triangle[3 * side].is_lit(); };
-      for (std::size_t side = 0; side < 2; ++side) {
-        if (!is_lit(side) && (side == 1 || is_lit(1))) continue;
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          Corner& c = corners.emplace_back(Corner{t, k, side == 1, side == 0 ? normal : -normal, {}, {}, 0});
-          const Covering& by = of_triangle[3 * side + k];
-          if (!by.is_lit()) continue;
-          if (!lit.material) lit.material = result_.material[by.triangle];
-          for (std::size_t i = 0; i < 3; ++i) {
-            const std::uint32_t p = result_.triangles[by.triangle][i];
-            c.lux += by.weight[i] * double{lux_[p]};
-            c.shown += by.weight[i] * shown_[p];
-            for (int n = 0; n < kMaxChannels; ++n)
-              c.E[n] += by.weight[i] * double{E_.value[p * static_cast<std::size_t>(E_.components) +
-                                                       static_cast<std::size_t>(std::min(n, E_.components - 1))]};
-          }
-        }
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  std::uint32_t vertex_of(CornerId c) const { return part_.triangles[c.triangle()][c.k()]; }
+  Vec3 normal_of(CornerId c) const {
+    const auto& [i, j, k] = part_.triangles[c.triangle()];
+    const Vec3 n = cross(part_.position[j] - part_.position[i], part_.position[k] - part_.position[i]);
+    return c.is_back() ? -n : n;
+  }
+
+  /// The sides that light reaches, else the front; and their corners by vertex.
+  void find_shown_sides() {
+    const auto visit = [&](const auto& take) {
+      for (std::uint32_t t = 0; t < part_.triangles.size(); ++t) {
+        const bool front = covering_[6 * t].is_lit(), back = covering_[6 * t + 3].is_lit();
+        if (covering_[6 * t].is_pane()) continue;
+        for (std::uint32_t c = 6 * t; c < 6 * t + 6; ++c)
+          if (c % 6 < 3 ? front || !back : back) take(CornerId{c});
       }
-    }
-    return corners;
+    };
+    begin_.assign(part_.position.size() + 1, 0);
+    visit([&](CornerId c) { ++begin_[vertex_of(c) + 1]; });
+    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    corners_.resize(begin_.back());
+    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    visit([&](CornerId c) { corners_[next[vertex_of(c)]++] = c.value; });
   }
 
-  static std::vector<Group> groups_of(const std::vector<Corner>& corners, std::size_t begin, std::size_t end,
-                                      double sharp_cosine) {
-    std::vector<Group> groups;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Corner& c = corners[i];
-      const auto joins = [&](const Group& g) {
-        if (g.is_back != c.is_back) return false;
-        const double both = length(g.normal) * length(c.normal);
-        if (!(both > 0)) return true;  // of no area
-        const double cosine = dot(g.normal, c.normal) / both;
-        if (cosine < sharp_cosine) return false;
-        return cosine < kFlat || !(jumps(g.E, c.E) || jumps(g.shown, c.shown));
-      };
-      const auto at = std::ranges::find_if(groups, joins);
-      Group& g = at != groups.end() ? *at : groups.emplace_back(Group{{}, {}, c.E, c.shown, c.is_back});
-      g.corners.push_back(i);
-      g.normal += c.normal;
+  Light light_of(CornerId c) const {
+    Light light;
+    const CornerCover& by = covering_[c.value];
+    if (!by.is_lit()) return light;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t p = result_.triangles[by.triangle][i];
+      const double weight = by.weight[i];
+      light.lux += weight * double{lux_[p]};
+      light.shown += weight * shown_[p];
+      const float* E = &E_.value[p * static_cast<std::size_t>(E_.components)];
+      light.E += E_.components == 1 ? Spectrum(weight * double{*E})
+                                    : Spectrum(weight * double{E[0]}, weight * double{E[1]}, weight * double{E[2]});
     }
-    return groups;
+    return light;
   }
 
-  static void add_vertex(LitPart& lit, std::uint32_t vertex, const Group& group, const std::vector<Corner>& corners,
-                         std::vector<std::uint32_t>& place) {
-    Spectrum E, shown;
-    double lux = 0, all = 0;
-    for (const std::size_t i : group.corners) {
-      const double area = std::max(length(corners[i].normal), 1e-300);
-      E += area * corners[i].E, shown += area * corners[i].shown, lux += area * corners[i].lux, all += area;
-      place[i] = static_cast<std::uint32_t>(lit.vertex.size());
-    }
+  /// Into the first group that goes on smoothly to the corner, or one of its own.
+  void put(CornerId c, std::vector<Group>& groups) {
+    const Vec3 normal = normal_of(c);
+    const Light light = light_of(c);
+    if (!lit_.material && covering_[c.value].is_lit()) lit_.material = result_.material[covering_[c.value].triangle];
+    const auto joins = [&](const Group& g) {
+      if (g.is_back != c.is_back()) return false;
+      const double both = length(g.normal) * length(normal);
+      if (!(both > 0)) return true;  // of no area
+      const double cosine = dot(g.normal, normal) / both;
+      if (cosine < part_.sharp_cosine) return false;
+      return cosine < kFlat || !(jumps(g.first.E, light.E) || jumps(g.first.shown, light.shown));
+    };
+    auto at = std::ranges::find_if(groups, joins);
+    if (at == groups.end()) at = groups.insert(at, Group{{}, {}, light, {}, 0, c.is_back()});
+    const double area = std::max(length(normal), 1e-300);
+    at->corners.push_back(c);
+    at->normal += normal;
+    at->area += area;
+    at->sum.E += area * light.E, at->sum.shown += area * light.shown, at->sum.lux += area * light.lux;
+  }
+
+  void add_vertex(std::uint32_t vertex, const Group& group) {
+    for (const CornerId c : group.corners) place_[c.value] = static_cast<std::uint32_t>(lit_.vertex.size());
     const Vec3 normal = normalized(group.normal);
-    lit.vertex.push_back(vertex);
-    lit.is_back.push_back(group.is_back);
-    lit.normal.push_back(length(normal) > 0 ? normal : Vec3{0, 0, 1});
-    for (int k = 0; k < lit.E.channels; ++k) {
-      lit.E.value.push_back(E[k] / all);
-      lit.shown.value.push_back(shown[k] / all);
+    lit_.vertex.push_back(vertex);
+    lit_.is_back.push_back(group.is_back);
+    lit_.normal.push_back(length(normal) > 0 ? normal : Vec3{0, 0, 1});
+    for (int k = 0; k < lit_.E.channels; ++k) {
+      lit_.E.value.push_back(group.sum.E[k] / group.area);
+      lit_.shown.value.push_back(group.sum.shown[k] / group.area);
     }
-    lit.illuminance.push_back(static_cast<float>(lux / all));
+    lit_.illuminance.push_back(static_cast<float>(group.sum.lux / group.area));
   }
 
   const WrittenResult& result_;
   const WrittenArray& E_;
   const std::vector<float>& lux_;
   const Field& shown_;
+  const ModelPart& part_;
+  std::span<const CornerCover> covering_;
+  std::vector<std::uint32_t> begin_, corners_;  ///< by vertex
+  std::vector<std::uint32_t> place_;            ///< of each corner: its vertex in the lit part
+  LitPart lit_;
 };
 
 }  // namespace
@@ -166,11 +179,10 @@ LitModel light_on_model(const WrittenResult& result, std::span<const ModelPart> 
   const CoveredModel covered = cover_model(result, triangles);
   const Field shown = shown_at_points(result, glowing_materials(result));
   LitModel lit{{}, covered.missing_share};
-  PartLight light(result, shown);
   std::size_t first = 0;
   for (const ModelPart& part : parts) {
     const std::size_t n = 6 * part.triangles.size();
-    lit.parts.push_back(light(part, std::span(covered.covering).subspan(first, n)));
+    lit.parts.push_back(PartLight(result, shown, part, std::span(covered.covering).subspan(first, n))());
     first += n;
   }
   return lit;

@@ -99,9 +99,31 @@ void add_positive_option(CLI::App& command, const std::string& name, std::option
   command.add_option(name, value, help)->type_name(unit)->check(silent(positive_number));
 }
 
+void add_exposure_option(CLI::App& command, double& exposure) {
+  command
+      .add_option("--exposure", exposure,
+                  "so many stops brighter than what shows the middle of the rooms well; 1 is twice as bright "
+                  "(default: 0)")
+      ->type_name("EV")
+      ->check(silent([](const std::string& text) {
+        double value = 0;
+        const bool is_number = CLI::detail::lexical_cast(text, value) && value >= -100 && value <= 100;
+        return is_number ? std::string() : text + " is not a number from -100 to 100";
+      }));
+}
+
 void require_extension(CLI::App& command, const std::string& option, const std::string& extension) {
-  command.get_option(option)->check(silent([extension](const std::string& file) {
-    return file.ends_with(extension) ? std::string() : file + " does not end in " + extension;
+  require_extension(command, option, std::vector{extension});
+}
+
+void require_extension(CLI::App& command, const std::string& option, const std::vector<std::string>& extensions) {
+  command.get_option(option)->check(silent([extensions](const std::string& file) {
+    std::string known;
+    for (const std::string& extension : extensions) {
+      if (file.ends_with(extension)) return std::string();
+      known += (known.empty() ? "" : extension == extensions.back() ? " or " : ", ") + extension;
+    }
+    return file + " does not end in " + known;
   }));
 }
 

@@ -44,7 +44,11 @@ void add_detail_option(CLI::App& command, std::optional<double>& detail);
 void add_positive_option(CLI::App& command, const std::string& name, std::optional<double>& value,
                          const std::string& unit, const std::string& help);
 
-/// Refuses an output that does not end in `extension`, as a slip of the pen.
+/// --exposure, in stops
+void add_exposure_option(CLI::App& command, double& exposure);
+
+/// Refuses an output that does not end in the extension, or in one of several, as a slip of the pen.
 void require_extension(CLI::App& command, const std::string& option, const std::string& extension);
+void require_extension(CLI::App& command, const std::string& option, const std::vector<std::string>& extensions);
 
 }  // namespace clerestory

@@ -15,6 +15,7 @@ void add_commands(CLI::App& program, Task& task) {
   add_solve_command(program, task);
   add_check_command(program, task);
   add_mesh_command(program, task);
+  add_bake_command(program, task);
   add_formfactors_command(program, task);
   add_tradeoff_command(program, task);
   add_report_command(program, task);

@@ -11,6 +11,7 @@ packages=(
   libembree-dev libtbb-dev                # rays, threads
   libcgal-dev                             # meshing
   libopenmesh-dev                         # elements, lightmaps
+  libstb-dev                              # places in a texture
   libassimp-dev nlohmann-json3-dev        # models and scene files in
   libvtk9-dev                             # results out
   libopenimageio-dev                      # sky images and textures in

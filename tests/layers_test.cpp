@@ -100,6 +100,7 @@ const std::vector<Library>& libraries() {
       {"Embree", std::regex("embree.*"), {"solver/visibility/"}},
       {"CGAL", std::regex("CGAL/.*"), {"meshing/"}, true},  // headers of kernels inside meshing/ only
       {"OpenMesh", std::regex("OpenMesh/.*"), {"meshing/", "solver/hierarchy/element_mesh"}, true},  // as CGAL
+      {"stb", std::regex("stb/.*"), {"meshing/atlas/"}},
       {"VTK", std::regex("vtk.*"), {"io/"}, true},  // what our .vtp files share, inside io/ only
       {"Assimp", std::regex("assimp/.*"), {"io/"}},
       {"OpenImageIO", std::regex("OpenImageIO/.*"), {"io/"}},

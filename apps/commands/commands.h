@@ -18,6 +18,7 @@ using Task = std::function<ExitCode()>;
 void add_solve_command(CLI::App& program, Task& task);
 void add_check_command(CLI::App& program, Task& task);
 void add_mesh_command(CLI::App& program, Task& task);
+void add_bake_command(CLI::App& program, Task& task);
 void add_formfactors_command(CLI::App& program, Task& task);
 void add_tradeoff_command(CLI::App& program, Task& task);
 void add_report_command(CLI::App& program, Task& task);

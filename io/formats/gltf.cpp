@@ -83,17 +83,6 @@ ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t 
   return to;
 }
 
-/// Corners of the triangles of a strip or fan, in order, as a list.
-std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& in, std::size_t mode) {
-  if (mode == 4) return in;
-  std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i + 2 < in.size(); ++i) {
-    if (mode == 5) out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
-    if (mode == 6) out.insert(out.end(), {in[i + 1], in[i + 2], in[0]});
-  }
-  return out;
-}
-
 /// Of vertices that primitives share, each takes its own when they are few: a node that shows a triangle then costs
 /// three vertices, and not all there are. Corners without a vertex stay so.
 void take_vertices(const std::vector<Vec3>& shared, LocalMesh& mesh) {
@@ -205,12 +194,14 @@ class GltfReader {
   }
 
   void read_nodes() {
-    visit_nodes(file_, [&](const Json& node, const Affine& place, const std::string& where) {
-      if (node.contains("mesh")) show_mesh(node, whole_number(file_, node, "mesh", 0, where), place, where);
+    visit_shown_nodes(file_, [&](const GltfNode& at) {
+      const Json& node = file_.element("nodes", at.index);
+      const std::string where = text("nodes[", at.index, "]");
+      if (node.contains("mesh")) show_mesh(node, whole_number(file_, node, "mesh", 0, where), at.place, where);
       const Json& light = extension(node, "KHR_lights_punctual");
-      if (light.contains("light")) add_light(whole_number(file_, light, "light", 0, where), place, node, where);
+      if (light.contains("light")) add_light(whole_number(file_, light, "light", 0, where), at.place, node, where);
       const Json& profile = extension(node, "EXT_lights_ies");
-      if (profile.contains("light")) add_light_profile(profile, place, node, where);
+      if (profile.contains("light")) add_light_profile(profile, at.place, node, where);
     });
   }
 
@@ -262,16 +253,7 @@ class GltfReader {
     LocalMesh mesh;
     const std::vector<Vec3>& vertices =
         file_.positions(whole_number(file_, *attributes, "POSITION", 0, where + ".attributes"));
-    std::vector<std::uint32_t> order;
-    if (primitive.contains("indices")) {
-      order = file_.indices(whole_number(file_, primitive, "indices", 0, where));
-    } else {
-      order.resize(vertices.size());
-      for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-    }
-    file_.spend((mode == 4 ? 1 : 3) * order.size(), where);
-    mesh.corner = as_triangles(order, mode);
-    mesh.corner.resize(mesh.corner.size() / 3 * 3);
+    mesh.corner = triangle_corners(file_, primitive, mode, vertices.size(), where);
     take_vertices(vertices, mesh);
     file_.spend(mesh.vertices.size(), where);
     for (std::size_t c = 3; c <= mesh.corner.size(); c += 3) mesh.face_begin.push_back(static_cast<std::uint32_t>(c));

@@ -21,13 +21,15 @@ const Json& member(const GltfFile& file, const Json& camera, const std::string& 
 std::vector<ModelCamera> read_gltf_cameras(const std::filesystem::path& path) {
   const GltfFile file(path);
   std::vector<ModelCamera> cameras;
-  visit_nodes(file, [&](const Json& node, const Affine& place, const std::string& node_place) {
+  visit_shown_nodes(file, [&](const GltfNode& at) {
+    const Json& node = file.element("nodes", at.index);
+    const std::string node_place = text("nodes[", at.index, "]");
     if (!node.contains("camera")) return;
     const std::size_t index = whole_number(file, node, "camera", 0, node_place);
     const Json& json = file.element("cameras", index);
     const std::string where = text("cameras[", index, "]");
     ModelCamera& camera = cameras.emplace_back();
-    camera.place = place;
+    camera.place = at.place;
     for (const std::string& name :
          {text_member(file, node, "name", node_place), text_member(file, json, "name", where)})
       if (!name.empty()) camera.names.push_back(clean_text(name));

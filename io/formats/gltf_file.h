@@ -38,6 +38,8 @@ class GltfFile {
   /// Of an accessor, decoded once however often it is used.
   const std::vector<Vec3>& positions(std::size_t accessor);
   std::vector<std::uint32_t> indices(std::size_t accessor);
+  /// All components of an accessor of that type ("VEC2"), n of them an element, as numbers.
+  std::vector<double> numbers(std::size_t accessor, const char* type, std::size_t n);
   /// What a uri stands for: a data URI, or a file beside the model. Read once, whatever number of times and by whatever
   /// path it is named. `uri` is a text of root().
   std::string_view uri_bytes(const std::string& uri, const std::string& where);
@@ -57,8 +59,6 @@ class GltfFile {
     std::size_t stride = 0;  // 0: tightly packed
   };
   View view(std::size_t buffer_view) const;
-  /// All components of an accessor, n of them an element, as numbers.
-  std::vector<double> numbers(std::size_t accessor, const char* type, std::size_t n);
   std::string_view buffer_bytes(const Json& buffer, std::size_t index, std::string_view binary_chunk);
 
   std::filesystem::path file_;

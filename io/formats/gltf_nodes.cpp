@@ -7,7 +7,7 @@
 namespace clerestory {
 namespace {
 
-using Json = GltfFile::Json;
+using Json = nlohmann::json;
 
 /// p -> T R S p, or the matrix, which glTF stores column by column.
 Affine read_transform(const GltfFile& file, const Json& node, const std::string& where) {
@@ -30,6 +30,17 @@ Affine read_transform(const GltfFile& file, const Json& node, const std::string&
   for (Vec3& row : a.A) row = {row.x * s[0], row.y * s[1], row.z * s[2]};
   a.b = {t[0], t[1], t[2]};
   return a;
+}
+
+/// Corners of the triangles of a strip or fan, in order, as a list.
+std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& in, std::size_t mode) {
+  if (mode == 4) return in;
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i + 2 < in.size(); ++i) {
+    if (mode == 5) out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
+    if (mode == 6) out.insert(out.end(), {in[i + 1], in[i + 2], in[0]});
+  }
+  return out;
 }
 
 std::vector<std::size_t> index_list(const GltfFile& file, const Json& object, const char* key,
@@ -66,29 +77,39 @@ std::vector<std::size_t> root_nodes(const GltfFile& file) {
 
 }  // namespace
 
-void visit_nodes(const GltfFile& file,
-                 const std::function<void(const Json& node, const Affine& place, const std::string& where)>& visit) {
-  struct Open {
-    std::size_t node;
-    Affine outer;
-  };
-  const Json& nodes = file.list("nodes");
-  std::vector<bool> seen(nodes.size(), false);
-  std::vector<Open> open;
+void visit_shown_nodes(const GltfFile& file, const std::function<void(const GltfNode&)>& visit) {
+  std::vector<bool> seen(file.list("nodes").size(), false);
+  std::vector<GltfNode> open;  // the place is the parent's
   const std::vector<std::size_t> roots = root_nodes(file);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, {}});
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root});
   while (!open.empty()) {
-    const Open at = open.back();
+    GltfNode at = open.back();
     open.pop_back();
-    const Json& node = file.element("nodes", at.node);
-    const std::string where = text("nodes[", at.node, "]");
-    if (seen[at.node]) file.refuse(where + " has two parents, or holds itself; nodes must form a tree");
-    seen[at.node] = true;
-    const Affine place = at.outer * read_transform(file, node, where);
+    const Json& node = file.element("nodes", at.index);
+    const std::string where = text("nodes[", at.index, "]");
+    if (seen[at.index]) file.refuse(where + " has two parents, or holds itself; nodes must form a tree");
+    seen[at.index] = true;
+    at.place = at.place * read_transform(file, node, where);
     const std::vector<std::size_t> children = index_list(file, node, "children", where);
-    for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, place});
-    visit(node, place, where);
+    for (auto child = children.rbegin(); child != children.rend(); ++child)
+      open.push_back({*child, at.index, at.place});
+    visit(at);
   }
+}
+
+std::vector<std::uint32_t> triangle_corners(GltfFile& file, const Json& primitive, std::size_t mode, std::size_t n,
+                                            const std::string& where) {
+  std::vector<std::uint32_t> order;
+  if (primitive.contains("indices")) {
+    order = file.indices(whole_number(file, primitive, "indices", 0, where));
+  } else {
+    order.resize(n);
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+  }
+  file.spend((mode == 4 ? 1 : 3) * order.size(), where);
+  std::vector<std::uint32_t> corners = as_triangles(order, mode);
+  corners.resize(corners.size() / 3 * 3);
+  return corners;
 }
 
 }  // namespace clerestory

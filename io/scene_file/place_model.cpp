@@ -12,6 +12,14 @@
 namespace clerestory {
 namespace {
 
+std::array<double, 12> rows_of(const Affine& a) {
+  std::array<double, 12> rows{};
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 4; ++c)
+      rows[4 * r + c] = c < 3 ? a.A[r][static_cast<int>(c)] : a.b[static_cast<int>(r)];
+  return rows;
+}
+
 void warn_once(Scene& scene, ModelsInScene& before, std::string warning) {
   if (before.warnings.insert(warning).second) scene.warnings.push_back(std::move(warning));
 }
@@ -222,7 +230,9 @@ void place_model(Scene& scene, ModelsInScene& before, const Model& model, const 
   scene.not_read.insert(scene.not_read.end(), model.not_read.begin(), model.not_read.end());
   const std::vector<bool> housing = add_fixtures(scene, model, place, name, by_fixture);
   const std::vector<MaterialId> material = add_materials(scene, before, model, file, housing, by_scene_file);
+  const std::size_t first_surface = scene.surfaces.size();
   const std::vector<SurfaceId> surface = add_surfaces(scene, before.surfaces, model, housing, stem);
+  scene.models.push_back({file, rows_of(place), first_surface, scene.surfaces.size() - first_surface});
   add_lights(scene, model.lights, place, name);
   add_spaces(scene, before.spaces, model, place, stem);
   note_north(scene, model, place);

@@ -7,6 +7,7 @@
 #include "io/read_cameras.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
+#include "pipeline/scene_of_result.h"
 #include "solver/model/box.h"
 #include "solver/model/error.h"
 #include "solver/model/patch_set.h"
@@ -16,20 +17,9 @@ namespace {
 
 constexpr double kUsualAngle = 60;  // [degrees]
 
-/// The model or scene that the result is of.
-std::filesystem::path input_of(const WrittenResult& result, const std::filesystem::path& file) {
-  const auto named = result.texts.find("input");
-  const std::filesystem::path input =
-      named != result.texts.end() && !named->second.empty() ? named->second.front() : std::string();
-  std::error_code error;
-  for (const std::filesystem::path& place : {input, file.parent_path() / input, file.parent_path() / input.filename()})
-    if (!input.empty() && std::filesystem::is_regular_file(place, error)) return place;
-  throw InputError(text(result.file, ": its cameras are in ", quotable(input.string(), 200),
-                        ", which is no longer there; bring it back, or say --eye and --target instead of --camera."));
-}
-
 SceneCamera camera_named(const WrittenResult& result, const std::filesystem::path& file, const std::string& name) {
-  const std::filesystem::path input = input_of(result, file);
+  const std::filesystem::path input = file_of_scene(
+      result, file, "its cameras are there; bring it back, or say --eye and --target instead of --camera");
   const std::vector<SceneCamera> cameras = read_cameras(input);
   if (cameras.empty())
     throw InputError(text(short_name(input), ": has no camera, which only glTF files carry; say --eye and --target ",

@@ -2,6 +2,7 @@
 // What was read: surfaces as polygons, materials, lights, sensors and settings. Nothing is meshed or checked for
 // geometry defects here; coordinates are metres, z up, in double.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -67,9 +68,17 @@ struct NotRead {
   std::string first;  ///< name of one of them
 };
 
+/// A model as it stands in the scene.
+struct PlacedModel {
+  std::filesystem::path file;
+  std::array<double, 12> place{};                    ///< 3 x 4, row-major: from the file's frame to the scene's [m]
+  std::size_t first_surface = 0, surface_count = 0;  ///< of Scene::surfaces
+};
+
 struct Scene {
   std::string file;
   std::vector<std::filesystem::path> files;  ///< all that it was read from, or that these name
+  std::vector<PlacedModel> models;           ///< in the order of their surfaces
   PolygonSoup polygons;
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< names, by SurfaceId

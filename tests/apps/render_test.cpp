@@ -165,7 +165,7 @@ TEST_F(Render, FindsTheCamerasOfAModelThatWasSolved) {
   std::filesystem::remove(folder / "model.gltf");
   const ProgramRun gone = look("Above");
   EXPECT_EQ(gone.exit_code, 3);
-  EXPECT_NE(gone.err.find("no longer there"), gone.err.npos) << gone.err;
+  EXPECT_NE(gone.err.find("not there any more"), gone.err.npos) << gone.err;
 }
 
 }  // namespace

@@ -1,0 +1,42 @@
+#include "pipeline/scene_of_result.h"
+
+#include <optional>
+#include <system_error>
+
+#include "io/read_scene.h"
+#include "io/text.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+std::optional<std::string> text_of(const WrittenResult& result, const char* name) {
+  const auto at = result.texts.find(name);
+  if (at == result.texts.end() || at->second.empty() || at->second.front().empty()) return {};
+  return at->second.front();
+}
+
+}  // namespace
+
+std::filesystem::path file_of_scene(const WrittenResult& result, const std::filesystem::path& file,
+                                    const std::string& advice) {
+  namespace fs = std::filesystem;
+  const std::string input = text_of(result, "input").value_or("");
+  const fs::path folder = file.parent_path();
+  for (const fs::path& place : {fs::path(input), folder / input, folder / fs::path(input).filename()}) {
+    std::error_code unknown;
+    if (!input.empty() && fs::is_regular_file(place, unknown)) return place;
+  }
+  throw InputError(text(result.file, ": was solved for ",
+                        input.empty() ? "a scene without a name" : quotable(input, 200),
+                        ", which is not there any more; ", advice, "."));
+}
+
+Scene read_scene_of(const WrittenResult& result, const std::filesystem::path& file,
+                    const std::filesystem::path& instead) {
+  const ReadOptions options{text_of(result, "settings.unit"), text_of(result, "settings.up"),
+                            text_of(result, "settings.sky")};
+  return read_scene(instead.empty() ? file_of_scene(result, file, "say where it is: --scene FILE") : instead, options);
+}
+
+}  // namespace clerestory

@@ -1,0 +1,138 @@
+// clerestory bake with textures, from the outside.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/box_scene.h"
+#include "tests/support/run_program.h"
+
+namespace clerestory {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A .glb taken apart.
+struct Glb {
+  Json json;
+  std::string binary;
+
+  explicit Glb(const std::string& file) {
+    const std::string bytes = read_text(file);
+    std::uint32_t size = 0;
+    std::memcpy(&size, bytes.data() + 12, 4);
+    json = Json::parse(bytes.substr(20, size));
+    binary = bytes.substr(20 + size + 8);
+  }
+  std::vector<float> floats(std::size_t accessor) const {
+    const Json& a = json["accessors"][accessor];
+    const Json& view = json["bufferViews"][a["bufferView"].get<std::size_t>()];
+    std::vector<float> values(view["byteLength"].get<std::size_t>() / 4);
+    std::memcpy(values.data(), binary.data() + view.value("byteOffset", std::size_t{0}), values.size() * 4);
+    return values;
+  }
+};
+
+/// A closed room in which all is equally bright, solved once.
+class BakeAtlas : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    const ProgramRun run = run_program({"solve", BoxScene{}.write(*folder_), "-o", *folder_ / "room.vtp", "--accuracy",
+                                        "draft", "--no-error", "--quiet"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static ProgramRun bake(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"bake", *folder_ / "room.vtp"});
+    return run_program(arguments);
+  }
+  static bool exists(const char* name) { return std::filesystem::exists(*folder_ / name); }
+
+  static TempFolder* folder_;
+};
+TempFolder* BakeAtlas::folder_ = nullptr;
+
+TEST_F(BakeAtlas, AGlbShowsItsLightByThePictureBesideIt) {
+  const ProgramRun run = bake({"-o", *folder_ / "my room.glb", "--texels-per-metre", "10"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("lookups: 100 % of the surface within 1 %"), run.out.npos) << run.out;
+  EXPECT_TRUE(exists("my room.exr") && exists("my room.png"));
+  const Glb glb(*folder_ / "my room.glb");
+  EXPECT_EQ(glb.json["images"][0]["uri"], "my%20room.png");
+  EXPECT_EQ(glb.json["samplers"][0]["wrapS"], 33071) << "clamped";
+  for (const Json& material : glb.json["materials"]) {
+    const Json& texture = material["pbrMetallicRoughness"]["baseColorTexture"];
+    EXPECT_EQ(texture["texCoord"], 1);
+    EXPECT_TRUE(material["extensions"].contains("KHR_materials_unlit"));
+  }
+  for (const Json& mesh : glb.json["meshes"])
+    for (const Json& primitive : mesh["primitives"]) {
+      const Json& attributes = primitive["attributes"];
+      EXPECT_FALSE(attributes.contains("COLOR_0")) << "light would count twice";
+      EXPECT_TRUE(attributes.contains("_ILLUMINANCE") && attributes.contains("_IRRADIANCE"));
+      for (const float x : glb.floats(attributes["TEXCOORD_1"])) EXPECT_TRUE(x >= 0 && x <= 1) << x;
+    }
+}
+
+TEST_F(BakeAtlas, TheExtensionTakesThePlaceOfBaseColourAndUnlit) {
+  const ProgramRun run = bake({"-o", *folder_ / "ext.glb", "--texels-per-metre", "10", "--lightmap-extension"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Glb glb(*folder_ / "ext.glb");
+  EXPECT_EQ(glb.json["extensionsUsed"], Json({"MOZ_lightmap"}));
+  for (const Json& material : glb.json["materials"]) {
+    EXPECT_FALSE(material["pbrMetallicRoughness"].contains("baseColorTexture"));
+    const Json& lightmap = material["extensions"]["MOZ_lightmap"];
+    EXPECT_EQ(lightmap["texCoord"], 1);
+    EXPECT_EQ(lightmap["intensity"], 1);
+    EXPECT_TRUE(lightmap.contains("index"));
+  }
+}
+
+TEST_F(BakeAtlas, TheTextureAloneHasItsChartsBesideIt) {
+  const ProgramRun run = bake({"-o", *folder_ / "atlas.exr"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json json = Json::parse(read_text(*folder_ / "atlas.json"));
+  EXPECT_EQ(json["texels_per_metre"], 20);
+  EXPECT_GE(json["used"], 0.75);
+  double area = 0;
+  for (const Json& chart : json["charts"]) area += chart["area"].get<double>();
+  EXPECT_NEAR(area, BoxScene{}.area(), 1e-4);
+}
+
+TEST_F(BakeAtlas, WhatCannotBeIsRefusedBeforeTheWork) {
+  for (const char* number : {"0", "-1", "nan", "inf", "many"})
+    EXPECT_EQ(bake({"-o", *folder_ / "no.glb", "--texels-per-metre", number}).exit_code, 2) << number;
+  EXPECT_EQ(bake({"-o", *folder_ / "no.ply", "--texels-per-metre", "10"}).exit_code, 2);
+  EXPECT_EQ(bake({"-o", *folder_ / "no.glb", "--lightmap-extension"}).exit_code, 2);
+  EXPECT_EQ(bake({"-o", *folder_ / "no.glb", "--texels-per-metre", "10", "--detail", "model"}).exit_code, 2);
+
+  const ProgramRun large = bake({"-o", *folder_ / "no.glb", "--texels-per-metre", "100000"});
+  EXPECT_EQ(large.exit_code, 3);
+  EXPECT_NE(large.err.find("room.vtp: 100000 texels per metre need a picture larger than 16384 x 16384"),
+            large.err.npos)
+      << large.err;
+  EXPECT_NE(large.err.find("fits."), large.err.npos);
+
+  std::filesystem::create_directory(*folder_ / "taken.png");
+  const ProgramRun taken = bake({"-o", *folder_ / "taken.glb", "--texels-per-metre", "10"});
+  EXPECT_EQ(taken.exit_code, 3);
+  EXPECT_NE(taken.err.find("taken.png"), taken.err.npos) << taken.err;
+  EXPECT_FALSE(exists("taken.glb") || exists("taken.exr") || exists("no.glb") || exists("no.exr") || exists("no.png"));
+}
+
+TEST_F(BakeAtlas, IsTheSameForAnyNumberOfThreads) {
+  ASSERT_EQ(bake({"-o", *folder_ / "one.glb", "--texels-per-metre", "15", "--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(bake({"-o", *folder_ / "two.glb", "--texels-per-metre", "15", "--threads", "3"}).exit_code, 0);
+  EXPECT_EQ(read_text(*folder_ / "one.exr"), read_text(*folder_ / "two.exr"));
+  EXPECT_EQ(read_text(*folder_ / "one.png"), read_text(*folder_ / "two.png"));
+  EXPECT_EQ(Glb(*folder_ / "one.glb").binary, Glb(*folder_ / "two.glb").binary);
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -144,6 +144,7 @@ std::pair<std::string, std::string> isolux_of(const Plan& plan, const Scale& sca
   std::string out, words;
   std::vector<PlanPoint> placed;
   for (const auto& [lux, path] : paths) {
+    if (plan.target == lux) out += "<path class=\"isolux casing\" d=\"" + path + "\"/>\n";
     out += text("<path class=\"isolux", plan.target == lux ? " target" : "", "\" d=\"", path, "\"/>\n");
     const auto at = label_place(*longest[lux], placed, scale);
     if (!at) continue;

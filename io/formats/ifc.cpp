@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "io/beside_program.h"
 #include "io/formats/child_process.h"
 #include "io/formats/ifc_answer.h"
 #include "io/formats/model.h"
@@ -51,8 +52,7 @@ void refuse_what_is_no_step_file(const std::filesystem::path& file) {
 /// Beside the program, in the build tree as where it is installed; else where the library was installed.
 std::filesystem::path reader_script(const std::string& name) {
   std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path beside = program.parent_path().parent_path() / CLERESTORY_IFC_FOLDER;
+  const std::filesystem::path beside = beside_program(CLERESTORY_IFC_FOLDER);
   for (const std::filesystem::path& folder : {beside, std::filesystem::path(CLERESTORY_INSTALLED_IFC_FOLDER)})
     if (std::filesystem::exists(folder / "node_modules/web-ifc/package.json", error)) return folder / "read_ifc.mjs";
   throw InputError(text(name, ": IFC is read by web-ifc, which is not in ", beside.string(), "; to install it, run ",

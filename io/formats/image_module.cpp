@@ -4,6 +4,7 @@
 
 #include <dlfcn.h>
 
+#include "io/beside_program.h"
 #include "io/formats/decode_image.h"
 #include "io/text.h"
 
@@ -11,10 +12,8 @@ namespace clerestory {
 
 void* image_function(const char* symbol) {
   // Beside the program, in the build tree as where it is installed; else where the library was installed.
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  for (const std::filesystem::path& folder : {program.parent_path().parent_path() / CLERESTORY_MODULE_FOLDER,
-                                              std::filesystem::path(CLERESTORY_INSTALLED_MODULE_FOLDER)}) {
+  for (const std::filesystem::path& folder :
+       {beside_program(CLERESTORY_MODULE_FOLDER), std::filesystem::path(CLERESTORY_INSTALLED_MODULE_FOLDER)}) {
     if (void* module = dlopen((folder / kDecodeImageModule).c_str(), RTLD_NOW)) return dlsym(module, symbol);
   }
   return nullptr;

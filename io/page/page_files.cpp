@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "io/beside_program.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 
@@ -15,8 +16,7 @@ namespace fs = std::filesystem;
 /// Beside the program, in the build tree as where it is installed; else where the library was installed.
 fs::path page_folder() {
   std::error_code error;
-  const fs::path beside =
-      fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / CLERESTORY_PAGE_FOLDER;
+  const fs::path beside = beside_program(CLERESTORY_PAGE_FOLDER);
   const fs::path installed = CLERESTORY_INSTALLED_PAGE_FOLDER;
   return !fs::exists(beside / "page.css", error) && fs::exists(installed / "page.css", error) ? installed : beside;
 }

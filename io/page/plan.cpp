@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 
+#include "io/page/css_colour.h"
 #include "io/picture/colour_map.h"
 #include "io/picture/iso_lines.h"
 #include "io/text.h"
@@ -28,13 +29,7 @@ std::string number(double x, int digits = 1) {
   return s == "-0" ? "0" : s;
 }
 
-std::string hex(int colour) {
-  const auto rgb = viridis(colour / (kColours - 1.0));
-  char out[8];
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned>(std::lround(255 * rgb[k])); };
-  std::snprintf(out, sizeof out, "#%02x%02x%02x", byte(0), byte(1), byte(2));
-  return out;
-}
+std::string hex(int colour) { return css_colour(colour / (kColours - 1.0)); }
 
 /// The largest of 1, 2 or 5 times a power of ten that is not above `most`.
 double round_step(double most) {
@@ -149,6 +144,7 @@ std::pair<std::string, std::string> isolux_of(const Plan& plan, const Scale& sca
   std::string out, words;
   std::vector<PlanPoint> placed;
   for (const auto& [lux, path] : paths) {
+    if (plan.target == lux) out += "<path class=\"isolux casing\" d=\"" + path + "\"/>\n";
     out += text("<path class=\"isolux", plan.target == lux ? " target" : "", "\" d=\"", path, "\"/>\n");
     const auto at = label_place(*longest[lux], placed, scale);
     if (!at) continue;

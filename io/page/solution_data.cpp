@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/page/css_colour.h"
 #include "io/page/packed.h"
-#include "io/picture/colour_map.h"
 #include "io/text.h"
 #include "solver/model/exposure.h"
 #include "solver/model/patch_set.h"
@@ -79,14 +79,6 @@ Json parts_of(const WrittenResult& r, const Order& order) {
   }
   if (inside > 0 && inside < all) add("all, with the outdoors", 0, all);
   return parts;
-}
-
-std::string hex_colour(double t) {
-  char text[8];
-  const auto rgb = viridis(t);
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned>(std::lround(255 * rgb[k])); };
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", byte(0), byte(1), byte(2));
-  return text;
 }
 
 std::vector<std::uint8_t> shades_of(const WrittenResult& r, const Order& order) {
@@ -179,7 +171,7 @@ SolutionData solution_data(const WrittenResult& r, std::span<const double> level
     const Vec3 d = l.position - centre;
     head["luminaires"].push_back({d.x, d.y, d.z});
   }
-  for (int i = 0; i < kColours; ++i) head["colours"].push_back(hex_colour(i / (kColours - 1.0)));
+  for (int i = 0; i < kColours; ++i) head["colours"].push_back(css_colour(i / (kColours - 1.0)));
   if (r.around.daylight_reference) head["daylightReference"] = *r.around.daylight_reference;
 
   SolutionData data;

@@ -14,6 +14,8 @@ namespace clerestory {
 
 /// "412", "1,234", "0.25": illuminance as a table shows it.
 std::string lux_words(double lux);
+/// "0.22": a uniformity.
+std::string ratio_words(double ratio);
 /// "12.5 m2" as "12.5".
 std::string area_words(double square_metres);
 /// "and 12 more"

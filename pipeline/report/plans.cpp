@@ -51,8 +51,11 @@ struct PlanBox {
 
 void set_colours(Plan& plan, const std::vector<double>& lux) {
   const auto [low, high] = std::ranges::minmax(lux);
-  plan.by_logarithm = low > 0 && high > kSmooth * low;
-  plan.lowest = plan.by_logarithm ? std::max(low, high / 1000) : high > 2 * low ? 0 : low;
+  double dimmest = high;  // of what is not dark
+  for (const double x : lux)
+    if (x > 0) dimmest = std::min(dimmest, x);
+  plan.by_logarithm = high > kSmooth * dimmest;
+  plan.lowest = plan.by_logarithm ? std::max(dimmest, high / 1000) : high > 2 * low ? 0 : low;
   plan.highest = high > plan.lowest ? high : plan.lowest + 1;
 }
 

@@ -46,10 +46,16 @@ std::string key_figures(const std::vector<RoomFigures>& rooms, const std::vector
   }
   if (result.around.daylight_reference)
     key.emplace_back("Daylight on open ground", lux_words(*result.around.daylight_reference) + " lx");
-  for (std::size_t i = 0; i < std::min<std::size_t>(sets.size(), 3); ++i) {
-    key.emplace_back("Mean, " + sets[i].name, lux_words(sets[i].mean) + " lx");
-    if (i == 0) key.emplace_back("Uniformity U0, " + sets[i].name, rounded(sets[i].uniformity, 2));
-  }
+  constexpr std::size_t kFew = 3;  // sets that are told one by one
+  if (sets.size() <= kFew)
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      key.emplace_back("Mean, " + sets[i].name, lux_words(sets[i].mean) + " lx");
+      if (i == 0) key.emplace_back("Uniformity U0, " + sets[i].name, ratio_words(sets[i].uniformity));
+    }
+  const auto held = std::ranges::count_if(sets, [](const SensorSummary& s) { return s.threshold.has_value(); });
+  const auto met =
+      std::ranges::count_if(sets, [](const SensorSummary& s) { return s.threshold && s.mean >= s.threshold->lux; });
+  if (sets.size() > kFew && held > 0) key.emplace_back("Sensors whose mean meets the target", text(met, " of ", held));
   if (run.worst_space) {
     const RunReport::PartError& worst = run.error_spaces[*run.worst_space];
     key.emplace_back("Measured error (rms), worst room",

@@ -28,6 +28,11 @@ std::string lux_words(double lux) {
                                                        : rounded(lux);
 }
 
+std::string ratio_words(double ratio) {
+  const long hundredths = std::lround(100 * ratio);
+  return text(hundredths / 100, hundredths % 100 < 10 ? ".0" : ".", hundredths % 100);
+}
+
 std::string area_words(double square_metres) {
   return square_metres >= 1000 ? lux_words(square_metres) : rounded(square_metres);
 }

@@ -82,8 +82,8 @@ std::string sensor_section(const WrittenResult& result, const std::vector<Sensor
   HtmlTable table(heads);
   for (std::size_t i = 0; i < std::min(sets.size(), kMostSets); ++i) {
     const SensorSummary& s = sets[i];
-    std::vector<std::string> row = {s.name,           grouped(s.points),   lux_words(s.mean),       lux_words(s.min),
-                                    lux_words(s.max), lux_words(s.median), rounded(s.uniformity, 2)};
+    std::vector<std::string> row = {s.name,           grouped(s.points),   lux_words(s.mean),        lux_words(s.min),
+                                    lux_words(s.max), lux_words(s.median), ratio_words(s.uniformity)};
     if (targets && s.threshold)
       row.insert(row.end(), {lux_words(s.threshold->lux), percent(s.threshold->share)});
     else if (targets)

@@ -57,7 +57,8 @@ std::string view_section(const WrittenResult& result, const PageFiles& files) {
       "<p class=\"screen\">Drag to turn, use the wheel to come nearer, drag with the right button to move. Click a "
       "surface to "
       "read its illuminance. Sides that are turned away are left out, so that one sees into rooms.</p>\n"
-      "<noscript><p class=\"warning\">The 3D view needs JavaScript; all else on this page does not.</p></noscript>\n"
+      "<noscript><style>#view { display: none; }</style><p class=\"warning\">The 3D view needs JavaScript; all else on "
+      "this page does not.</p></noscript>\n"
       "<div id=\"view\">\n<div class=\"bar\">\n"
       "<label>Show <select id=\"view-show\"><option value=\"false\">illuminance</option><option value=\"seen\">as it "
       "is seen</option></select></label>\n<label>Room <select id=\"view-part\">",

@@ -58,7 +58,7 @@ TEST(ReportPage, SaysWhatTheResultHas) {
   for (const char* words :
        {"<h1>house.json</h1>", "<td class=\"words\">room 1</td><td>2.00</td><td>315</td><td>200</td><td>430</td>",
         "<td class=\"words\">sheet 3</td><td>1.00</td><td>365</td><td>300</td><td>430</td>",
-        "<td class=\"words\">desk</td><td>20</td><td>95.0</td><td>0</td><td>190</td><td>95.0</td><td>0</td>",
+        "<td class=\"words\">desk</td><td>20</td><td>95.0</td><td>0</td><td>190</td><td>95.0</td><td>0.00</td>",
         "pendant.ies", "<td>3</td><td>900</td><td>2,700</td>", "60.00 W, 60.0 %", "look out", "paper", "<svg",
         "three.js is not there", "0.950 %"})
     EXPECT_EQ(times(words, page) > 0, true) << words;
@@ -71,7 +71,7 @@ TEST(ReportPage, HoldsSensorsAgainstTheNearestTarget) {
   r.around.sensors[2].set.threshold = 50;
   const auto row = [](const char* name, const char* target, const char* share) {
     return std::string("<td class=\"words\">") + name +
-           "</td><td>20</td><td>95.0</td><td>0</td><td>190</td><td>95.0</td><td>0</td><td>" + target + "</td><td>" +
+           "</td><td>20</td><td>95.0</td><td>0</td><td>190</td><td>95.0</td><td>0.00</td><td>" + target + "</td><td>" +
            share + "</td>";
   };
   std::string page = page_of(r);

@@ -105,7 +105,7 @@ TEST_F(Bake, RefusesWhatItCannotUse) {
   std::string older = read_text(result_);
   older.replace(older.find("result_format"), 13, "results_forms");
   expect_refusal({folder_.write("older.vtp", older), "-o", out}, 3, "solve the scene again");
-  expect_refusal({result_, "-o", folder_ / "a.fbx"}, 2, "does not end in .ply, .obj or .glb");
+  expect_refusal({result_, "-o", folder_ / "a.fbx"}, 2, "does not end in .ply, .obj, .glb or .exr");
   expect_refusal({result_}, 2, "--output");
   expect_refusal({result_, "-o", out, "--detail", "fine"}, 2, "light|model");
   expect_refusal({result_, "-o", out, "--exposure", "bright"}, 2, "--exposure");

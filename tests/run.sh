@@ -2,6 +2,7 @@
 # Installs what is missing, builds everything, and runs the tests. Ends with CTest's summary.
 #   --quick     without those that are labelled long
 #   --paraview  also opens results in Debian's ParaView, which it downloads once
+#   --blender   the same with baked files and Debian's Blender
 # Whatever else there is goes to ctest.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,6 +14,10 @@ for argument in "$@"; do
     --paraview)
       to_ctest+=(--build-config paraview)
       bash tests/paraview/get_paraview.sh
+      ;;
+    --blender)
+      to_ctest+=(--build-config blender)
+      bash tests/blender/get_blender.sh
       ;;
     *) to_ctest+=("$argument") ;;
   esac

@@ -106,7 +106,9 @@ void say_atlas(const LightmapAtlas& atlas, const WrittenResult& result, Console&
 /// The texture lightmap, and the GLB that it belongs to.
 Counts write_with_atlas(const Arguments& arguments, const WrittenResult& result, double exposure, Outputs& outputs,
                         Console& console) {
-  const LightmapAtlas atlas = make_atlas(result, arguments.texels_per_metre.value_or(Arguments::kTexelsPerMetre));
+  const LightmapAtlas atlas =
+      make_atlas(result, arguments.texels_per_metre.value_or(Arguments::kTexelsPerMetre), console.monitor());
+  if (console.should_stop()) return {};
   const BakedMesh mesh = with_atlas(baked_points(result), atlas);
   write_atlas_exr(outputs.open(arguments.beside(Arguments::kExr)), atlas);
   if (arguments.has(Arguments::kExr)) write_atlas_json(outputs.open(arguments.beside(Arguments::kJson)), atlas, result);

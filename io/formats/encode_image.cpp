@@ -35,5 +35,6 @@ extern "C" [[gnu::visibility("default")]] bool clerestory_encode_exr(int width, 
   OIIO::ImageSpec spec(width, height, static_cast<int>(n), OIIO::TypeDesc::FLOAT);
   spec.channelnames.assign(channels, channels + n);
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // else it is now, and no two files are the same
   return encode("exr", spec, value, to, put);
 }

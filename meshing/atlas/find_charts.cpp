@@ -78,7 +78,7 @@ class ChartFinder {
     }
   }
 
-  std::vector<AtlasChart> charts() {
+  std::vector<AtlasChart> charts(const Monitor& monitor) {
     const std::vector<Piece> pieces = whole_pieces();
     std::vector<std::uint32_t> of(result_.triangles.size());
     for (std::uint32_t i = 0; i < pieces.size(); ++i)
@@ -89,8 +89,9 @@ class ChartFinder {
 
     seen_.assign(across_.size(), 0);
     std::vector<std::vector<AtlasChart>> of_piece(pieces.size());
-    parallel_for(pieces.size(), 1, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(pieces.size(), 256, 1, "charts", monitor, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) of_piece[i] = cut(pieces[i]);
+      return 0;
     });
     std::vector<AtlasChart> all;
     for (auto& some : of_piece) std::move(some.begin(), some.end(), std::back_inserter(all));
@@ -428,8 +429,8 @@ class ChartFinder {
 
 }  // namespace
 
-std::vector<AtlasChart> find_charts(const WrittenResult& result, double texels_per_metre) {
-  return ChartFinder(result, texels_per_metre).charts();
+std::vector<AtlasChart> find_charts(const WrittenResult& result, double texels_per_metre, const Monitor& monitor) {
+  return ChartFinder(result, texels_per_metre).charts(monitor);
 }
 
 }  // namespace clerestory

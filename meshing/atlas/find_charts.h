@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solver/model/lightmap_atlas.h"
+#include "solver/model/monitor.h"
 #include "solver/model/written_result.h"
 
 namespace clerestory {
@@ -18,9 +19,10 @@ namespace clerestory {
 /// Cuts follow edges; no triangle is divided.
 ///
 /// texels_per_metre  > 0; a chart has at least so many, and at least two texels each way.
-/// returns           charts by their lowest triangle; x and y are not set. Every triangle is in one chart.
+/// returns           charts by their lowest triangle; x and y are not set. Every triangle is in one chart, unless the
+///                   monitor stopped it.
 /// Threads: same bits for any thread count. Cost: O(texels + triangles log triangles).
-std::vector<AtlasChart> find_charts(const WrittenResult& result, double texels_per_metre);
+std::vector<AtlasChart> find_charts(const WrittenResult& result, double texels_per_metre, const Monitor& monitor = {});
 inline constexpr int kLongestChart = 2048;  ///< texels, where it can be cut
 
 }  // namespace clerestory

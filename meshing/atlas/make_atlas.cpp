@@ -132,13 +132,13 @@ void fill_between(int width, int height, std::size_t channels, std::vector<std::
 }
 
 /// All texels.
-void paint(const WrittenResult& result, const Field& value, LightmapAtlas& atlas) {
+void paint(const WrittenResult& result, const Field& value, const Monitor& monitor, LightmapAtlas& atlas) {
   const auto channels = static_cast<std::size_t>(value.channels);
   const auto texels = static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height);
   atlas.value.assign(texels * channels, 0.f);
   std::vector<std::uint8_t> is_known(texels, 0);
   const std::vector<std::size_t> order = largest_first(atlas.charts);
-  parallel_for(order.size(), 1, [&](std::size_t from, std::size_t to) {
+  parallel_blocks(order.size(), 64, 1, "texels", monitor, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       const AtlasChart& chart = atlas.charts[order[i]];
       const std::vector<float> texel = fit_texels(result, chart, value);
@@ -153,18 +153,20 @@ void paint(const WrittenResult& result, const Field& value, LightmapAtlas& atlas
           for (std::size_t c = 0; c < channels; ++c) atlas.value[there * channels + c] = texel[here * channels + c];
         }
     }
+    return 0;
   });
   fill_between(atlas.width, atlas.height, channels, is_known, atlas.value);
 }
 
 }  // namespace
 
-LightmapAtlas make_atlas(const WrittenResult& result, double texels_per_metre) {
+LightmapAtlas make_atlas(const WrittenResult& result, double texels_per_metre, const Monitor& monitor) {
   const double area = area_of(result);
   if (area * texels_per_metre * texels_per_metre > kMostTexels) refuse(result, texels_per_metre, area);
   LightmapAtlas atlas;
   atlas.texels_per_metre = texels_per_metre;
-  atlas.charts = find_charts(result, texels_per_metre);
+  atlas.charts = find_charts(result, texels_per_metre, monitor);
+  if (monitor.should_stop()) return {};
   const Field value = values_at_points(result);
   atlas.channels = value.channels;
   const auto [width, height] = pack_charts(atlas.charts);
@@ -174,7 +176,8 @@ LightmapAtlas make_atlas(const WrittenResult& result, double texels_per_metre) {
   for (const AtlasChart& chart : atlas.charts) used += static_cast<double>(chart.used);
   atlas.used = used / (double{1} * width * height);
   set_uv(result, atlas);
-  paint(result, value, atlas);
+  paint(result, value, monitor, atlas);
+  if (monitor.should_stop()) return {};
   atlas.error = measure_atlas(result, value, atlas);
   return atlas;
 }

@@ -3,6 +3,7 @@
 
 #include "solver/model/baked_mesh.h"
 #include "solver/model/lightmap_atlas.h"
+#include "solver/model/monitor.h"
 #include "solver/model/written_result.h"
 
 namespace clerestory {
@@ -11,9 +12,10 @@ namespace clerestory {
 /// (measure_atlas.h). Channels are illuminance [lx] and what BakedMesh::shown is.
 ///
 /// texels_per_metre  > 0
+/// returns           nothing of use when the monitor stopped it.
 /// throws            InputError when no picture of 16384 x 16384 texels holds it; the message tells what one would.
 /// Threads: same bits for any thread count.
-LightmapAtlas make_atlas(const WrittenResult& result, double texels_per_metre);
+LightmapAtlas make_atlas(const WrittenResult& result, double texels_per_metre, const Monitor& monitor = {});
 
 /// The mesh with places in the atlas: vertices that several charts have are repeated.
 ///

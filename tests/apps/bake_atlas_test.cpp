@@ -1,41 +1,18 @@
 // clerestory bake with textures, from the outside.
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/box_scene.h"
+#include "tests/support/glb_file.h"
 #include "tests/support/run_program.h"
 
 namespace clerestory {
 namespace {
 
 using Json = nlohmann::json;
-
-/// A .glb taken apart.
-struct Glb {
-  Json json;
-  std::string binary;
-
-  explicit Glb(const std::string& file) {
-    const std::string bytes = read_text(file);
-    std::uint32_t size = 0;
-    std::memcpy(&size, bytes.data() + 12, 4);
-    json = Json::parse(bytes.substr(20, size));
-    binary = bytes.substr(20 + size + 8);
-  }
-  std::vector<float> floats(std::size_t accessor) const {
-    const Json& a = json["accessors"][accessor];
-    const Json& view = json["bufferViews"][a["bufferView"].get<std::size_t>()];
-    std::vector<float> values(view["byteLength"].get<std::size_t>() / 4);
-    std::memcpy(values.data(), binary.data() + view.value("byteOffset", std::size_t{0}), values.size() * 4);
-    return values;
-  }
-};
 
 /// A closed room in which all is equally bright, solved once.
 class BakeAtlas : public testing::Test {
@@ -63,7 +40,7 @@ TEST_F(BakeAtlas, AGlbShowsItsLightByThePictureBesideIt) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.out.find("lookups: 100 % of the surface within 1 %"), run.out.npos) << run.out;
   EXPECT_TRUE(exists("my room.exr") && exists("my room.png"));
-  const Glb glb(*folder_ / "my room.glb");
+  const GlbFile glb(*folder_ / "my room.glb");
   EXPECT_EQ(glb.json["images"][0]["uri"], "my%20room.png");
   EXPECT_EQ(glb.json["samplers"][0]["wrapS"], 33071) << "clamped";
   for (const Json& material : glb.json["materials"]) {
@@ -76,14 +53,14 @@ TEST_F(BakeAtlas, AGlbShowsItsLightByThePictureBesideIt) {
       const Json& attributes = primitive["attributes"];
       EXPECT_FALSE(attributes.contains("COLOR_0")) << "light would count twice";
       EXPECT_TRUE(attributes.contains("_ILLUMINANCE") && attributes.contains("_IRRADIANCE"));
-      for (const float x : glb.floats(attributes["TEXCOORD_1"])) EXPECT_TRUE(x >= 0 && x <= 1) << x;
+      for (const double x : glb.numbers(attributes["TEXCOORD_1"])) EXPECT_TRUE(x >= 0 && x <= 1) << x;
     }
 }
 
 TEST_F(BakeAtlas, TheExtensionTakesThePlaceOfBaseColourAndUnlit) {
   const ProgramRun run = bake({"-o", *folder_ / "ext.glb", "--texels-per-metre", "10", "--lightmap-extension"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Glb glb(*folder_ / "ext.glb");
+  const GlbFile glb(*folder_ / "ext.glb");
   EXPECT_EQ(glb.json["extensionsUsed"], Json({"MOZ_lightmap"}));
   for (const Json& material : glb.json["materials"]) {
     EXPECT_FALSE(material["pbrMetallicRoughness"].contains("baseColorTexture"));
@@ -131,7 +108,7 @@ TEST_F(BakeAtlas, IsTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(bake({"-o", *folder_ / "two.glb", "--texels-per-metre", "15", "--threads", "3"}).exit_code, 0);
   EXPECT_EQ(read_text(*folder_ / "one.exr"), read_text(*folder_ / "two.exr"));
   EXPECT_EQ(read_text(*folder_ / "one.png"), read_text(*folder_ / "two.png"));
-  EXPECT_EQ(Glb(*folder_ / "one.glb").binary, Glb(*folder_ / "two.glb").binary);
+  EXPECT_EQ(GlbFile(*folder_ / "one.glb").binary, GlbFile(*folder_ / "two.glb").binary);
 }
 
 }  // namespace

@@ -35,3 +35,9 @@ END
 bake "$results/far.json" far
 
 node "$here/read_baked.mjs" "$results"/*_light.glb "$results"/*_model.glb
+
+# Light as a texture, as base colour and as MOZ_lightmap.
+"$program" bake "$results/box.vtp" -o "$results/box atlas.glb" --texels-per-metre 200 --quiet
+"$program" bake "$results/office.vtp" -o "$results/office_atlas.glb" --texels-per-metre 20 --quiet
+"$program" bake "$results/office.vtp" -o "$results/office_extension_atlas.glb" --texels-per-metre 20 --lightmap-extension --quiet
+node "$here/read_atlas.mjs" "$results"/*atlas.glb

@@ -9,6 +9,7 @@
 
 #include "solver/model/units.h"
 #include "solver/model/written_result.h"
+#include "tests/support/flat_result.h"
 
 namespace clerestory {
 
@@ -16,19 +17,14 @@ class LitSurfaces {
  public:
   using Light = std::function<double(const Vec3&)>;  ///< [lx]
 
-  LitSurfaces() {
-    result.file = "by_hand.vtp";
-    result.materials.emplace_back();
-    result.materials[0].reflectance = Spectrum(0.5);
-    for (const char* name : {"irradiance", "illuminance", "radiosity"}) result.of_points[name].components = 1;
-  }
+  LitSurfaces() : result(empty_result()) { result.surfaces.clear(); }
 
   std::uint32_t add_point(const Vec3& p, double lux) {
     result.points.push_back(p);
     const double E = lux / kWhiteEfficacy;
     result.of_points["illuminance"].value.push_back(static_cast<float>(lux));
     result.of_points["irradiance"].value.push_back(static_cast<float>(E));
-    result.of_points["radiosity"].value.push_back(static_cast<float>(0.5 * E));
+    result.of_points["radiosity"].value.push_back(static_cast<float>(result.materials[0].reflectance[0] * E));
     return static_cast<std::uint32_t>(result.points.size() - 1);
   }
   std::uint32_t add_surface(const std::string& name) {

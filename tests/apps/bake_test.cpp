@@ -1,0 +1,121 @@
+// clerestory bake from the outside: what it writes, and what it refuses.
+
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/box_scene.h"
+#include "tests/support/glb_file.h"
+#include "tests/support/result_file.h"
+#include "tests/support/run_program.h"
+
+namespace clerestory {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Bake : public testing::Test {
+ protected:
+  void SetUp() override {
+    const ProgramRun run = run_program({"solve", scene_, "-o", result_, "--accuracy", "draft", "--no-error"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  void expect_refusal(std::vector<std::string> arguments, int exit_code, const std::string& words) {
+    arguments.insert(arguments.begin(), "bake");
+    const std::string before = folder_.listing();
+    const ProgramRun run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_NE(run.err.find(words), std::string::npos) << words << "\n" << run.err;
+    EXPECT_EQ(folder_.listing(), before) << "nothing is written";
+  }
+
+  TempFolder folder_;
+  BoxScene box_;
+  std::string scene_ = box_.write(folder_), result_ = folder_ / "room.vtp";
+};
+
+TEST_F(Bake, ALitRoomHasTheLightOfTheSolutionInEveryFormatAndDetail) {
+  // Every surface receives B = M / (1 - rho), up to what a draft errs.
+  for (const char* detail : {"light", "model"}) {
+    for (const char* name : {"a.glb", "a.ply", "a.obj"}) {
+      const ProgramRun run = run_program({"bake", result_, "-o", folder_ / name, "--detail", detail});
+      EXPECT_EQ(run.exit_code, 0) << run.err;
+      EXPECT_EQ(run.err, "");
+      EXPECT_NE(run.out.find(std::string("lightmap ") + (folder_ / name)), std::string::npos) << run.out;
+    }
+    const GlbFile glb(folder_ / "a.glb");
+    std::size_t vertices = 0;
+    for (const auto& mesh : glb.json["meshes"])
+      for (const auto& primitive : mesh["primitives"])
+        for (const double E : glb.numbers(primitive["attributes"]["_IRRADIANCE"])) {
+          EXPECT_NEAR(E / box_.radiosity(), 1, 0.02);
+          ++vertices;
+        }
+    if (*detail == 'l') {
+      EXPECT_EQ(vertices, 3 * read_result(result_).points.size());
+    } else {
+      EXPECT_EQ(vertices, 3u * 24) << "four corners of six walls";
+    }
+  }
+}
+
+TEST_F(Bake, ExposureIsInStops) {
+  const auto exposure = [&](const char* ev) {
+    run_program({"bake", result_, "-o", folder_ / "a.glb", "--exposure", ev});
+    return GlbFile(folder_ / "a.glb").json["meshes"][0]["extras"]["exposure"].get<double>();
+  };
+  EXPECT_NEAR(exposure("1") / exposure("0"), 2, 1e-12);
+  EXPECT_NEAR(exposure("-2.5") / exposure("0"), std::exp2(-2.5), 1e-12);
+}
+
+TEST_F(Bake, WritesTheSameBytesForAnyNumberOfThreads) {
+  for (const char* threads : {"1", "2"})
+    run_program(
+        {"bake", result_, "-o", folder_ / (threads + std::string(".glb")), "--detail", "model", "--threads", threads});
+  EXPECT_EQ(read_text(folder_ / "1.glb"), read_text(folder_ / "2.glb"));
+}
+
+TEST_F(Bake, FindsTheSceneBesideTheResultOrWhereItIsTold) {
+  const TempFolder other;
+  for (const char* name : {"room.json", "room.obj", "room.vtp"}) fs::copy(folder_ / name, other / name);
+  fs::remove(folder_ / "room.json");
+  EXPECT_EQ(run_program({"bake", other / "room.vtp", "-o", other / "a.glb", "--detail", "model"}).exit_code, 0);
+  expect_refusal({result_, "-o", folder_ / "a.glb", "--detail", "model"}, 3, "--scene FILE");
+  const ProgramRun run =
+      run_program({"bake", result_, "-o", folder_ / "a.glb", "--detail", "model", "--scene", other / "room.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+TEST_F(Bake, WarnsWhenTheModelWasChanged) {
+  BoxScene larger;
+  larger.size.x += 0.5;
+  larger.write(folder_);
+  const ProgramRun run = run_program({"bake", result_, "-o", folder_ / "a.glb", "--detail", "model"});
+  EXPECT_EQ(run.exit_code, 0);
+  // Of 59 m2 the wall at the far end, 7.5 m2, has no face any more.
+  EXPECT_NE(run.err.find("has no face where 12.7 % of the solution's surfaces are"), std::string::npos) << run.err;
+}
+
+TEST_F(Bake, RefusesWhatItCannotUse) {
+  const std::string out = folder_ / "a.glb";
+  expect_refusal({scene_, "-o", out}, 3, "is no VTK PolyData");
+  expect_refusal({folder_ / "none.vtp", "-o", out}, 3, "no such file");
+  expect_refusal({folder_.write("cut.vtp", read_text(result_).substr(0, 5000)), "-o", out}, 3, "cut short");
+  std::string older = read_text(result_);
+  older.replace(older.find("result_format"), 13, "results_forms");
+  expect_refusal({folder_.write("older.vtp", older), "-o", out}, 3, "solve the scene again");
+  expect_refusal({result_, "-o", folder_ / "a.fbx"}, 2, "does not end in .ply, .obj, .glb or .exr");
+  expect_refusal({result_}, 2, "--output");
+  expect_refusal({result_, "-o", out, "--detail", "fine"}, 2, "light|model");
+  expect_refusal({result_, "-o", out, "--exposure", "bright"}, 2, "--exposure");
+  expect_refusal({result_, "-o", folder_ / "none/a.glb"}, 3, "does not exist");
+  expect_refusal({result_, "-o", out, "--detail", "model", "--scene", folder_ / "none.json"}, 3, "no such file");
+  fs::create_symlink(result_, folder_ / "link.glb");
+  expect_refusal({result_, "-o", folder_ / "link.glb"}, 3, "is the input");
+  fs::create_hard_link(folder_ / "room.obj", folder_ / "hard.obj");
+  expect_refusal({result_, "-o", folder_ / "hard.obj", "--detail", "model"}, 3, "is a file of the scene");
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -67,6 +67,10 @@ Counts write_model_detail(AtomicFile& file, const WrittenResult& result, const A
 }
 
 ExitCode bake_command(const Arguments& arguments, Console& console) {
+  if (!arguments.scene.empty() && arguments.detail != "model") {
+    console.fail("--scene is for --detail model only: the light of a solution needs no model.");
+    return kWrongUsage;
+  }
   check_writable(arguments.output);
   const WrittenResult result = read_result(arguments.input);
   const double exposure = exposure_of(result, arguments.exposure);

@@ -123,6 +123,10 @@ Counts write_with_atlas(const Arguments& arguments, const WrittenResult& result,
 }
 
 ExitCode bake_command(const Arguments& arguments, Console& console) {
+  if (!arguments.scene.empty() && arguments.detail != "model") {
+    console.fail("--scene is for --detail model only: the light of a solution needs no model.");
+    return kWrongUsage;
+  }
   if (arguments.texels_per_metre && !arguments.has(Arguments::kGlb) && !arguments.has(Arguments::kExr)) {
     console.fail("--texels-per-metre is for .glb and .exr: " + arguments.output + " holds no texture coordinates");
     return kWrongUsage;

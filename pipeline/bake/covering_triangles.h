@@ -17,6 +17,8 @@ struct CornerCover {
   std::uint32_t triangle = kNone;  ///< of the result
   std::array<float, 3> weight{};   ///< of its points, sum 1
 
+  bool is_hidden = false;  ///< it lies under something; the light is that nearest to it
+
   bool is_lit() const { return triangle < kPane; }
   bool is_pane() const { return triangle == kPane; }
 };

@@ -28,19 +28,20 @@ struct Light {
 struct Group {
   std::vector<CornerId> corners;
   Vec3 normal;       ///< of the facets, by area
-  Light first, sum;  ///< of the first corner; by area
+  Light first, sum;  ///< of the first corner; by `area`
   double area = 0;
-  bool is_back = false;
+  bool is_back = false, is_hidden = false;
 };
 
 /// Facets that face so much the same way are parts of one flat surface: light that jumps between them does so at the
 /// rim of something that stands there.
 constexpr double kFlat = 0.999;
-constexpr double kJump = 0.01;  ///< of the light [1]
+constexpr double kJump = 0.002;      ///< of the light [1]
+constexpr double kHiddenJump = 0.5;  ///< the same at corners under something, which have light from farther off
 
-bool jumps(const Spectrum& a, const Spectrum& b) {
+bool jumps(const Spectrum& a, const Spectrum& b, double most) {
   for (int k = 0; k < kMaxChannels; ++k)
-    if (std::abs(a[k] - b[k]) > kJump * std::max(a[k], b[k])) return true;
+    if (std::abs(a[k] - b[k]) > most * std::max(a[k], b[k])) return true;
   return false;
 }
 
@@ -127,6 +128,7 @@ class PartLight {
   void put(CornerId c, std::vector<Group>& groups) {
     const Vec3 normal = normal_of(c);
     const Light light = light_of(c);
+    const bool is_hidden = covering_[c.value].is_hidden;
     if (!lit_.material && covering_[c.value].is_lit()) lit_.material = result_.material[covering_[c.value].triangle];
     const auto joins = [&](const Group& g) {
       if (g.is_back != c.is_back()) return false;
@@ -134,11 +136,13 @@ class PartLight {
       if (!(both > 0)) return true;  // of no area
       const double cosine = dot(g.normal, normal) / both;
       if (cosine < part_.sharp_cosine) return false;
-      return cosine < kFlat || !(jumps(g.first.E, light.E) || jumps(g.first.shown, light.shown));
+      const double most = is_hidden || g.is_hidden ? kHiddenJump : kJump;
+      return cosine < kFlat || !(jumps(g.first.E, light.E, most) || jumps(g.first.shown, light.shown, most));
     };
     auto at = std::ranges::find_if(groups, joins);
-    if (at == groups.end()) at = groups.insert(at, Group{{}, {}, light, {}, 0, c.is_back()});
-    const double area = std::max(length(normal), 1e-300);
+    if (at == groups.end()) at = groups.insert(at, Group{{}, {}, light, {}, 0, c.is_back(), is_hidden});
+    // Of hidden corners and others, the others tell the light.
+    const double area = std::max(length(normal) * (is_hidden ? 1e-9 : 1), 1e-300);
     at->corners.push_back(c);
     at->normal += normal;
     at->area += area;

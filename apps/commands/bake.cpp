@@ -25,7 +25,7 @@ struct Arguments {
   double exposure = 0;
 };
 
-bool is_of(const AtomicFile& file, const char* extension) { return file.destination().extension() == extension; }
+bool is_of(const AtomicFile& file, const char* extension) { return file.destination().string().ends_with(extension); }
 
 void write_mesh(AtomicFile& file, const BakedMesh& mesh, const BakedNames& names, double exposure) {
   if (is_of(file, ".ply")) write_baked_ply(file, mesh, exposure);
@@ -78,10 +78,6 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
   AtomicFile& file = outputs.open(arguments.output);
   const Counts counts = arguments.detail == "model" ? write_model_detail(file, result, arguments, console, exposure)
                                                     : write_light_detail(file, result, exposure);
-  if (console.should_stop()) {
-    console.warn("interrupted; nothing is written.");
-    return kInterrupted;
-  }
   RunReport report = new_report(arguments.input);
   report.counts.triangles = counts.triangles;
   report.counts.points = counts.points;

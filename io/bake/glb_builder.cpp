@@ -120,7 +120,7 @@ void GlbBuilder::show(const std::vector<std::size_t>& nodes) {
 void GlbBuilder::write(AtomicFile& file) {
   binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
   if (!binary_.empty()) root_["buffers"] = {{{"byteLength", binary_.size()}}};
-  std::string json = root_.dump();
+  std::string json = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::uint64_t size = 12 + 8 + json.size() + (binary_.empty() ? 0 : 8 + binary_.size());
   if (size > std::numeric_limits<std::uint32_t>::max())

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <regex>
-#include <set>
 #include <utility>
 
 #include "io/bake/gltf_materials.h"
@@ -104,7 +103,7 @@ class Graft {
     for (const std::uint32_t v : lit.vertex) at.push_back(source.vertex[v]);
 
     std::vector<Vec3> position, E;
-    const auto& all = model_.file.positions(attributes["POSITION"].get<std::size_t>());
+    const auto& all = model_.file.positions(accessor_of(attributes, "POSITION"));
     for (const std::uint32_t v : at) position.push_back(all[v]);
     to["POSITION"] = glb_.add_positions(position);
     to["NORMAL"] = glb_.add_vectors(normals_of(source, lit, attributes, at));
@@ -126,11 +125,15 @@ class Graft {
             {"material", materials_(material, uv_sets, lit.material)}};
   }
 
+  std::size_t accessor_of(const Json& attributes, const std::string& name) {
+    return whole_number(model_.file, attributes, name.c_str(), 0, "attributes");
+  }
+
   /// Of the file, turned round on backs; where it has none, those of the facets.
   std::vector<Vec3> normals_of(const GltfModel::Source& source, const LitPart& lit, const Json& attributes,
                                const std::vector<std::uint32_t>& at) {
     const std::vector<Vec3>* own = nullptr;
-    if (attributes.contains("NORMAL")) own = &model_.file.positions(attributes["NORMAL"].get<std::size_t>());
+    if (attributes.contains("NORMAL")) own = &model_.file.positions(accessor_of(attributes, "NORMAL"));
     const auto& A = source.place.A;
     std::vector<Vec3> normals;
     for (std::size_t i = 0; i < at.size(); ++i) {
@@ -147,7 +150,7 @@ class Graft {
   std::size_t copy_attributes(const Json& attributes, const std::vector<std::uint32_t>& at, Json& to) {
     static const std::regex own_name("_[A-Z0-9_]+");
     const auto copy = [&](const std::string& name, const std::string& as, bool is_colour) {
-      if (const auto accessor = values_of(attributes[name], at, is_colour)) to[as] = *accessor;
+      if (const auto accessor = values_of(accessor_of(attributes, name), at, is_colour)) to[as] = *accessor;
       return to.contains(as);
     };
     std::size_t sets = 0;
@@ -161,13 +164,13 @@ class Graft {
     return sets;
   }
 
-  std::optional<std::size_t> values_of(const Json& accessor, const std::vector<std::uint32_t>& at, bool is_colour) {
-    const Json& json = model_.file.element("accessors", accessor.get<std::size_t>());
+  std::optional<std::size_t> values_of(std::size_t accessor, const std::vector<std::uint32_t>& at, bool is_colour) {
+    const Json& json = model_.file.element("accessors", accessor);
     const std::string type = text_member(model_.file, json, "type", "accessors");
     const std::size_t n = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
     if (n == 0) return {};
-    auto& values = decoded_[accessor.get<std::size_t>()];
-    if (values.empty()) values = model_.file.numbers(accessor.get<std::size_t>(), type.c_str(), n);
+    auto& values = decoded_[accessor];
+    if (values.empty()) values = model_.file.numbers(accessor, type.c_str(), n);
     std::vector<float> chosen;
     chosen.reserve(n * at.size());
     for (const std::uint32_t v : at)

@@ -42,13 +42,20 @@ double off_rim(const Triangle& t, const Vec3& q) {
   return least;
 }
 
+double width(const Triangle& t) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, length(t[(k + 1) % 3] - t[k]));
+  return longest > 0 ? length(cross(t[1] - t[0], t[2] - t[0])) / longest : 0;
+}
+
 class Cover {
  public:
   Cover(const WrittenResult& result, std::span<const Triangle> model)
       : result_(result),
         model_(model),
         lit_count_(result.triangles.size()),
-        tolerance_(tolerance_of(result)),
+        rounding_(rounding_of(result)),
+        tolerance_(rounding_ + 2 * moved(result)),
         tree_(lit_count_ + result.around.panes.size(), BoxOf{this}) {}
   Cover(const Cover&) = delete;  // the tree looks here
   Cover& operator=(const Cover&) = delete;
@@ -64,11 +71,15 @@ class Cover {
   }
 
  private:
-  /// Faces that the mesher moved are so far from where they were, at most; and what floats lose.
-  static double tolerance_of(const WrittenResult& result) {
+  /// What floats lose, and readers and meshers round [m].
+  static double rounding_of(const WrittenResult& result) {
     const Box box = Box::around(result.points);
-    const auto moved = result.figures.find("repairs.simplified_by");
-    return 1e-5 * length(box.upper - box.lower) + (moved != result.figures.end() ? 2 * moved->second : 0);
+    return 1e-5 * length(box.upper - box.lower);
+  }
+  /// Faces that the mesher simplified are so far from where they were, at most.
+  static double moved(const WrittenResult& result) {
+    const auto by = result.figures.find("repairs.simplified_by");
+    return by != result.figures.end() ? by->second : 0;
   }
 
   /// Of the result, or a pane behind those.
@@ -147,28 +158,30 @@ class Cover {
   void cover(std::size_t f, std::span<CornerCover> covering) const {
     const Triangle& face = model_[f];
     const Vec3 normal = unit_normal(face), middle = centroid(face);
-    if (!(length(normal) > 0)) return;  // dark
+    if (width(face) < rounding_) std::ranges::fill(covering, CornerCover{CornerCover::kNone, {}, true});
+    if (!(length(normal) > 0)) return;
     std::array<std::array<std::uint32_t, 3>, 2> by;
     by[0].fill(CornerCover::kNone), by[1].fill(CornerCover::kNone);
     int panes = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 inwards = middle - face[k];
-      const Vec3 q = face[k] + inwards * std::min(0.5, 2 * tolerance_ / length(inwards));
+      const Vec3 q = face[k] + inwards * std::min(0.5, 2 * rounding_ / length(inwards));
       const auto found = at(q, normal, off_rim(face, q));
       for (std::size_t side = 0; side < 2; ++side) by[side][k] = found[side].triangle;
       const bool on_pane = found[2].triangle != CornerCover::kNone;
       panes += on_pane && by[0][k] == CornerCover::kNone && by[1][k] == CornerCover::kNone;
     }
     if (panes >= 2) {
-      std::ranges::fill(covering, CornerCover{CornerCover::kPane, {}});
+      std::ranges::fill(covering, CornerCover{CornerCover::kPane, {}, false});
       return;
     }
     for (std::size_t side = 0; side < 2; ++side) {
+      const std::array<std::uint32_t, 3> found = by[side];
       fill_gaps(face, 2 * f + side, by[side]);
       for (std::size_t k = 0; k < 3; ++k) {
         if (by[side][k] == CornerCover::kNone) continue;
         const Triangle t = triangle(by[side][k]);
-        covering[3 * side + k] = {by[side][k], weights(t, nearest_point(t, face[k]))};
+        covering[3 * side + k] = {by[side][k], weights(t, nearest_point(t, face[k])), found[k] == CornerCover::kNone};
       }
     }
   }
@@ -192,7 +205,7 @@ class Cover {
   const WrittenResult& result_;
   std::span<const Triangle> model_;
   std::size_t lit_count_;
-  double tolerance_;
+  double rounding_, tolerance_;  ///< [m]
   struct BoxOf {
     const Cover* cover;
     Box operator()(std::uint32_t i) const { return box_of(cover->triangle(i)); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "pipeline/bake/covering_triangles.h"
@@ -28,19 +29,20 @@ struct Light {
 struct Group {
   std::vector<CornerId> corners;
   Vec3 normal;       ///< of the facets, by area
-  Light first, sum;  ///< of the first corner; by area
+  Light first, sum;  ///< of the first corner; by `area`
   double area = 0;
-  bool is_back = false;
+  bool is_back = false, is_hidden = false;
 };
 
 /// Facets that face so much the same way are parts of one flat surface: light that jumps between them does so at the
 /// rim of something that stands there.
 constexpr double kFlat = 0.999;
-constexpr double kJump = 0.01;  ///< of the light [1]
+constexpr double kJump = 0.002;      ///< of the light [1]
+constexpr double kHiddenJump = 0.5;  ///< the same at corners under something, which have light from farther off
 
-bool jumps(const Spectrum& a, const Spectrum& b) {
+bool jumps(const Spectrum& a, const Spectrum& b, double most) {
   for (int k = 0; k < kMaxChannels; ++k)
-    if (std::abs(a[k] - b[k]) > kJump * std::max(a[k], b[k])) return true;
+    if (std::abs(a[k] - b[k]) > most * std::max(a[k], b[k])) return true;
   return false;
 }
 
@@ -63,12 +65,17 @@ class PartLight {
     std::vector<Group> groups;
     for (std::uint32_t v = 0; v < part_.position.size(); ++v) {
       groups.clear();
-      for (std::uint32_t c = begin_[v]; c < begin_[v + 1]; ++c) put(CornerId{corners_[c]}, groups);
+      const std::span<const std::uint32_t> around = std::span(corners_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
+      for (const std::uint32_t c : around)
+        if (!is_of_sliver(CornerId{c})) put(CornerId{c}, groups);
+      for (const std::uint32_t c : around)
+        if (is_of_sliver(CornerId{c})) put_sliver(CornerId{c}, groups);
       if (groups.empty()) continue;
       add_vertex(v, groups.front());
       for (std::size_t g = 1; g < groups.size(); ++g) split.push_back({v, std::move(groups[g])});
     }
     for (const auto& [vertex, group] : split) add_vertex(vertex, group);
+    light_slivers();
     for (std::size_t c = 0; c < place_.size(); c += 3) {
       if (place_[c] == kNone) continue;
       if (c % 6 == 0)
@@ -123,10 +130,25 @@ class PartLight {
     return light;
   }
 
+  /// Of a face that is too narrow to have light of its own.
+  bool is_of_sliver(CornerId c) const { return covering_[c.value].is_hidden && !covering_[c.value].is_lit(); }
+  /// Into the group that faces most as it does, whose light it takes.
+  void put_sliver(CornerId c, std::vector<Group>& groups) {
+    const auto facing = [n = normalized(normal_of(c))](const Group& g) {
+      return g.is_back ? -2.0 : dot(n, normalized(g.normal));
+    };
+    const auto at = std::ranges::max_element(groups, {}, facing);
+    if (at == groups.end() || at->is_back)
+      put(c, groups);
+    else
+      at->corners.push_back(c);
+  }
+
   /// Into the first group that goes on smoothly to the corner, or one of its own.
   void put(CornerId c, std::vector<Group>& groups) {
     const Vec3 normal = normal_of(c);
     const Light light = light_of(c);
+    const bool is_hidden = covering_[c.value].is_hidden;
     if (!lit_.material && covering_[c.value].is_lit()) lit_.material = result_.material[covering_[c.value].triangle];
     const auto joins = [&](const Group& g) {
       if (g.is_back != c.is_back()) return false;
@@ -134,18 +156,40 @@ class PartLight {
       if (!(both > 0)) return true;  // of no area
       const double cosine = dot(g.normal, normal) / both;
       if (cosine < part_.sharp_cosine) return false;
-      return cosine < kFlat || !(jumps(g.first.E, light.E) || jumps(g.first.shown, light.shown));
+      const double most = is_hidden || g.is_hidden ? kHiddenJump : kJump;
+      return cosine < kFlat || !(jumps(g.first.E, light.E, most) || jumps(g.first.shown, light.shown, most));
     };
     auto at = std::ranges::find_if(groups, joins);
-    if (at == groups.end()) at = groups.insert(at, Group{{}, {}, light, {}, 0, c.is_back()});
-    const double area = std::max(length(normal), 1e-300);
+    if (at == groups.end()) at = groups.insert(at, Group{{}, {}, light, {}, 0, c.is_back(), is_hidden});
+    // Of hidden corners and others, the others tell the light.
+    const double area = std::max(length(normal) * (is_hidden ? 1e-9 : 1), 1e-300);
     at->corners.push_back(c);
     at->normal += normal;
     at->area += area;
     at->sum.E += area * light.E, at->sum.shown += area * light.shown, at->sum.lux += area * light.lux;
   }
 
+  /// Vertices that slivers alone have take the light of others in the same place: bevels of no width have their own.
+  void light_slivers() {
+    if (slivers_.empty()) return;
+    std::map<std::array<double, 3>, std::uint32_t> lit_at;
+    const auto place_of = [&](std::uint32_t i) {
+      const Vec3& p = part_.position[lit_.vertex[i]];
+      return std::array<double, 3>{p.x, p.y, p.z};
+    };
+    for (std::uint32_t i = 0; i < lit_.vertex.size(); ++i)
+      if (lit_.illuminance[i] > 0 && !lit_.is_back[i]) lit_at.try_emplace(place_of(i), i);
+    for (const std::uint32_t i : slivers_) {
+      const auto at = lit_at.find(place_of(i));
+      if (at == lit_at.end()) continue;
+      lit_.E.set(i, lit_.E[at->second]), lit_.shown.set(i, lit_.shown[at->second]);
+      lit_.illuminance[i] = lit_.illuminance[at->second];
+    }
+  }
+
   void add_vertex(std::uint32_t vertex, const Group& group) {
+    if (std::ranges::all_of(group.corners, [&](CornerId c) { return is_of_sliver(c); }))
+      slivers_.push_back(static_cast<std::uint32_t>(lit_.vertex.size()));
     for (const CornerId c : group.corners) place_[c.value] = static_cast<std::uint32_t>(lit_.vertex.size());
     const Vec3 normal = normalized(group.normal);
     lit_.vertex.push_back(vertex);
@@ -166,6 +210,7 @@ class PartLight {
   std::span<const CornerCover> covering_;
   std::vector<std::uint32_t> begin_, corners_;  ///< by vertex
   std::vector<std::uint32_t> place_;            ///< of each corner: its vertex in the lit part
+  std::vector<std::uint32_t> slivers_;          ///< of the lit part's vertices, those of slivers alone
   LitPart lit_;
 };
 

@@ -109,6 +109,7 @@ TEST_F(Bake, RefusesWhatItCannotUse) {
   expect_refusal({result_}, 2, "--output");
   expect_refusal({result_, "-o", out, "--detail", "fine"}, 2, "light|model");
   expect_refusal({result_, "-o", out, "--exposure", "bright"}, 2, "--exposure");
+  expect_refusal({result_, "-o", out, "--scene", scene_}, 2, "--detail model only");
   expect_refusal({result_, "-o", folder_ / "none/a.glb"}, 3, "does not exist");
   expect_refusal({result_, "-o", out, "--detail", "model", "--scene", folder_ / "none.json"}, 3, "no such file");
   fs::create_symlink(result_, folder_ / "link.glb");

@@ -31,10 +31,8 @@ struct Arguments {
 
   bool has(const char* extension) const { return output.ends_with(extension); }
   bool wants_atlas() const { return texels_per_metre || has(kExr); }
-  /// The file beside the output with another extension.
-  std::string beside(const char* extension) const {
-    return std::filesystem::path(output).replace_extension(extension).string();
-  }
+  /// The file beside the .glb or .exr with another extension.
+  std::string beside(const char* extension) const { return output.substr(0, output.size() - 4) + extension; }
   static constexpr const char *kGlb = ".glb", *kExr = ".exr", *kPng = ".png", *kJson = ".json";
   static constexpr double kTexelsPerMetre = 20;  ///< where none are asked for
 
@@ -50,7 +48,7 @@ struct Arguments {
   }
 };
 
-bool is_of(const AtomicFile& file, const char* extension) { return file.destination().extension() == extension; }
+bool is_of(const AtomicFile& file, const char* extension) { return file.destination().string().ends_with(extension); }
 
 void write_mesh(AtomicFile& file, const BakedMesh& mesh, const BakedNames& names, double exposure) {
   if (is_of(file, ".ply")) write_baked_ply(file, mesh, exposure);

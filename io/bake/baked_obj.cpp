@@ -13,9 +13,6 @@ constexpr std::size_t kEnough = 1 << 20;
 class Lines {
  public:
   explicit Lines(AtomicFile& file) : file_(file) {}
-  ~Lines() = default;
-  Lines(const Lines&) = delete;
-  Lines& operator=(const Lines&) = delete;
 
   Lines& operator<<(std::string_view words) {
     text_ += words;

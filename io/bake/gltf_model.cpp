@@ -31,6 +31,28 @@ bool is_for_node(const Affine& a) {
   return true;
 }
 
+/// The vertices that corners use, in their order; corners become places in those. Of a few corners among many vertices,
+/// which a thousand primitives may share, only the few are looked at.
+std::vector<std::uint32_t> take_vertices_of(std::vector<std::uint32_t>& corners, std::size_t n) {
+  std::vector<std::uint32_t> used;
+  if (corners.size() < n / 8) {
+    used = corners;
+    std::ranges::sort(used);
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (std::uint32_t& c : corners) c = static_cast<std::uint32_t>(std::ranges::lower_bound(used, c) - used.begin());
+    return used;
+  }
+  std::vector<std::uint32_t> place(n, 0);
+  for (const std::uint32_t c : corners) place[c] = 1;
+  for (std::uint32_t v = 0; v < n; ++v)
+    if (place[v]) {
+      place[v] = static_cast<std::uint32_t>(used.size());
+      used.push_back(v);
+    }
+  for (std::uint32_t& c : corners) c = place[c];
+  return used;
+}
+
 }  // namespace
 
 GltfModel::GltfModel(const std::filesystem::path& path, const Affine& of_file) : file(path), place(of_file) {
@@ -60,24 +82,16 @@ void GltfModel::add_parts(const GltfNode& node) {
     std::vector<std::uint32_t> corners = triangle_corners(file, primitive, mode, positions.size(), place_of);
     if (corners.empty()) continue;
 
-    Source source{node.index, mesh, p, {}, to_scene};
-    std::vector<std::uint32_t> order(positions.size(), 0);
-    for (const std::uint32_t c : corners) {
+    for (const std::uint32_t c : corners)
       if (c >= positions.size()) file.refuse(text(place_of, ": vertex ", c, " is not there"));
-      order[c] = 1;
-    }
+    Source source{node.index, mesh, p, take_vertices_of(corners, positions.size()), to_scene};
     ModelPart part;
     part.name = name;
     part.sharp_cosine = attributes->contains("NORMAL") ? kSmoothIfSaid : part.sharp_cosine;
-    for (std::uint32_t v = 0; v < order.size(); ++v) {
-      if (!order[v]) continue;
-      order[v] = static_cast<std::uint32_t>(source.vertex.size());
-      source.vertex.push_back(v);
-      part.position.push_back(to_scene.point(positions[v]));
-    }
+    for (const std::uint32_t v : source.vertex) part.position.push_back(to_scene.point(positions[v]));
     file.spend(part.position.size() + corners.size(), place_of);
     for (std::size_t c = 0; c + 2 < corners.size(); c += 3) {
-      std::array<std::uint32_t, 3> triangle{order[corners[c]], order[corners[c + 1]], order[corners[c + 2]]};
+      std::array<std::uint32_t, 3> triangle{corners[c], corners[c + 1], corners[c + 2]};
       if (to_scene.mirrors()) std::swap(triangle[0], triangle[2]);  // fronts stay fronts
       part.triangles.push_back(triangle);
     }

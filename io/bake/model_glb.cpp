@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <regex>
-#include <set>
 #include <utility>
 
 #include "io/bake/gltf_materials.h"

@@ -42,6 +42,12 @@ double off_rim(const Triangle& t, const Vec3& q) {
   return least;
 }
 
+double width(const Triangle& t) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, length(t[(k + 1) % 3] - t[k]));
+  return longest > 0 ? length(cross(t[1] - t[0], t[2] - t[0])) / longest : 0;
+}
+
 class Cover {
  public:
   Cover(const WrittenResult& result, std::span<const Triangle> model)
@@ -152,7 +158,8 @@ class Cover {
   void cover(std::size_t f, std::span<CornerCover> covering) const {
     const Triangle& face = model_[f];
     const Vec3 normal = unit_normal(face), middle = centroid(face);
-    if (!(length(normal) > 0)) return;  // dark
+    if (width(face) < rounding_) std::ranges::fill(covering, CornerCover{CornerCover::kNone, {}, true});
+    if (!(length(normal) > 0)) return;
     std::array<std::array<std::uint32_t, 3>, 2> by;
     by[0].fill(CornerCover::kNone), by[1].fill(CornerCover::kNone);
     int panes = 0;

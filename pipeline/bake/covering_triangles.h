@@ -17,7 +17,9 @@ struct CornerCover {
   std::uint32_t triangle = kNone;  ///< of the result
   std::array<float, 3> weight{};   ///< of its points, sum 1
 
-  bool is_hidden = false;  ///< it lies under something; the light is that nearest to it
+  /// Nothing covers it: it lies under something, and the light is that nearest to it; or it has none as its face is too
+  /// narrow for the mesher to keep.
+  bool is_hidden = false;
 
   bool is_lit() const { return triangle < kPane; }
   bool is_pane() const { return triangle == kPane; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "pipeline/bake/covering_triangles.h"
@@ -64,12 +65,17 @@ class PartLight {
     std::vector<Group> groups;
     for (std::uint32_t v = 0; v < part_.position.size(); ++v) {
       groups.clear();
-      for (std::uint32_t c = begin_[v]; c < begin_[v + 1]; ++c) put(CornerId{corners_[c]}, groups);
+      const std::span<const std::uint32_t> around = std::span(corners_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
+      for (const std::uint32_t c : around)
+        if (!is_of_sliver(CornerId{c})) put(CornerId{c}, groups);
+      for (const std::uint32_t c : around)
+        if (is_of_sliver(CornerId{c})) put_sliver(CornerId{c}, groups);
       if (groups.empty()) continue;
       add_vertex(v, groups.front());
       for (std::size_t g = 1; g < groups.size(); ++g) split.push_back({v, std::move(groups[g])});
     }
     for (const auto& [vertex, group] : split) add_vertex(vertex, group);
+    light_slivers();
     for (std::size_t c = 0; c < place_.size(); c += 3) {
       if (place_[c] == kNone) continue;
       if (c % 6 == 0)
@@ -124,6 +130,20 @@ class PartLight {
     return light;
   }
 
+  /// Of a face that is too narrow to have light of its own.
+  bool is_of_sliver(CornerId c) const { return covering_[c.value].is_hidden && !covering_[c.value].is_lit(); }
+  /// Into the group that faces most as it does, whose light it takes.
+  void put_sliver(CornerId c, std::vector<Group>& groups) {
+    const auto facing = [n = normalized(normal_of(c))](const Group& g) {
+      return g.is_back ? -2.0 : dot(n, normalized(g.normal));
+    };
+    const auto at = std::ranges::max_element(groups, {}, facing);
+    if (at == groups.end() || at->is_back)
+      put(c, groups);
+    else
+      at->corners.push_back(c);
+  }
+
   /// Into the first group that goes on smoothly to the corner, or one of its own.
   void put(CornerId c, std::vector<Group>& groups) {
     const Vec3 normal = normal_of(c);
@@ -149,7 +169,27 @@ class PartLight {
     at->sum.E += area * light.E, at->sum.shown += area * light.shown, at->sum.lux += area * light.lux;
   }
 
+  /// Vertices that slivers alone have take the light of others in the same place: bevels of no width have their own.
+  void light_slivers() {
+    if (slivers_.empty()) return;
+    std::map<std::array<double, 3>, std::uint32_t> lit_at;
+    const auto place_of = [&](std::uint32_t i) {
+      const Vec3& p = part_.position[lit_.vertex[i]];
+      return std::array<double, 3>{p.x, p.y, p.z};
+    };
+    for (std::uint32_t i = 0; i < lit_.vertex.size(); ++i)
+      if (lit_.illuminance[i] > 0 && !lit_.is_back[i]) lit_at.try_emplace(place_of(i), i);
+    for (const std::uint32_t i : slivers_) {
+      const auto at = lit_at.find(place_of(i));
+      if (at == lit_at.end()) continue;
+      lit_.E.set(i, lit_.E[at->second]), lit_.shown.set(i, lit_.shown[at->second]);
+      lit_.illuminance[i] = lit_.illuminance[at->second];
+    }
+  }
+
   void add_vertex(std::uint32_t vertex, const Group& group) {
+    if (std::ranges::all_of(group.corners, [&](CornerId c) { return is_of_sliver(c); }))
+      slivers_.push_back(static_cast<std::uint32_t>(lit_.vertex.size()));
     for (const CornerId c : group.corners) place_[c.value] = static_cast<std::uint32_t>(lit_.vertex.size());
     const Vec3 normal = normalized(group.normal);
     lit_.vertex.push_back(vertex);
@@ -170,6 +210,7 @@ class PartLight {
   std::span<const CornerCover> covering_;
   std::vector<std::uint32_t> begin_, corners_;  ///< by vertex
   std::vector<std::uint32_t> place_;            ///< of each corner: its vertex in the lit part
+  std::vector<std::uint32_t> slivers_;          ///< of the lit part's vertices, those of slivers alone
   LitPart lit_;
 };
 

@@ -82,6 +82,11 @@ TEST_F(BakeAtlas, TheTextureAloneHasItsChartsBesideIt) {
   EXPECT_NEAR(area, BoxScene{}.area(), 1e-4);
 }
 
+TEST_F(BakeAtlas, AFileCalledExrHasItsJsonBesideIt) {
+  ASSERT_EQ(bake({"-o", *folder_ / ".exr", "--texels-per-metre", "5"}).exit_code, 0);
+  EXPECT_TRUE(exists(".exr") && exists(".json"));
+}
+
 TEST_F(BakeAtlas, WhatCannotBeIsRefusedBeforeTheWork) {
   for (const char* number : {"0", "-1", "nan", "inf", "many"})
     EXPECT_EQ(bake({"-o", *folder_ / "no.glb", "--texels-per-metre", number}).exit_code, 2) << number;

@@ -109,6 +109,19 @@ TEST(LightOnModel, SharpEdgesAreSplitAndBentSurfacesAreNot) {
   EXPECT_TRUE(at_ramp > 5 && at_ramp < 6) << at_ramp;
 }
 
+TEST(LightOnModel, SliversThatTheMesherDropsTakeTheLightBesideThem) {
+  WrittenResult r = empty_result();
+  add_rectangle(r, {}, {1, 0, 0}, {0, 1, 0}, 2, [](const Vec3&) { return 5.0; });
+  ModelPart part = rectangle({}, {1, 0, 0}, {0, 1, 0});
+  part.position.push_back({1, 1, -1e-6});                                  // of a bevel, and of a triangle without area
+  part.position.push_back({0, 0, 0}), part.position.push_back({1, 1, 0});  // another on vertices of its own
+  part.triangles.insert(part.triangles.begin(), {{2, 1, 4}, {0, 2, 2}, {5, 6, 5}});
+  const LitPart lit = light_on_model(r, std::vector{part}).parts[0];
+  ASSERT_EQ(lit.vertex.size(), 7u);
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_FLOAT_EQ(static_cast<float>(lit.E.at(i, 0)), i == 4 ? 0 : 5) << i;
+  EXPECT_EQ(lit.triangles.size(), 5u);
+}
+
 TEST(LightOnModel, GlassIsLeftOut) {
   WrittenResult r = empty_result();
   add_rectangle(r, {}, {1, 0, 0}, {0, 1, 0}, 2, linear);

@@ -112,10 +112,6 @@ void add_exposure_option(CLI::App& command, double& exposure) {
       }));
 }
 
-void require_extension(CLI::App& command, const std::string& option, const std::string& extension) {
-  require_extension(command, option, std::vector{extension});
-}
-
 void require_extension(CLI::App& command, const std::string& option, const std::vector<std::string>& extensions) {
   command.get_option(option)->check(silent([extensions](const std::string& file) {
     std::string known;

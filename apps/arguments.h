@@ -48,7 +48,6 @@ void add_positive_option(CLI::App& command, const std::string& name, std::option
 void add_exposure_option(CLI::App& command, double& exposure);
 
 /// Refuses an output that does not end in the extension, or in one of several, as a slip of the pen.
-void require_extension(CLI::App& command, const std::string& option, const std::string& extension);
 void require_extension(CLI::App& command, const std::string& option, const std::vector<std::string>& extensions);
 
 }  // namespace clerestory

@@ -53,6 +53,13 @@ Problem read_size(const std::string& words, int& width, int& height) {
   return {};
 }
 
+Problem read_plan(const std::string& words, std::optional<Cut>& to) {
+  const auto height = finite(words);
+  if (!height) return quotable(words) + " is not a height in metres, such as 1.2";
+  to = Cut{2, *height};
+  return {};
+}
+
 Problem read_section(const std::string& words, std::optional<Cut>& to) {
   const auto place = words.size() > 2 ? finite(std::string_view(words).substr(2)) : std::nullopt;
   if (!place || words[1] != '=' || (words[0] != 'x' && words[0] != 'y'))

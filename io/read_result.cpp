@@ -24,6 +24,7 @@
 namespace clerestory {
 namespace {
 
+constexpr double kFarthest = 1e13;  // [m] ten times what readers of models take
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{64} << 30;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
@@ -135,6 +136,10 @@ std::vector<Material> materials_of(const Tables& tables, const WrittenResult& re
     if (kind == std::end(kMaterialKindNames)) refuse(file, text("has a material of the unknown kind '", kinds[i], "'"));
     materials[i].name = at->second[i];
     materials[i].kind = static_cast<MaterialKind>(kind - std::begin(kMaterialKindNames));
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
+      if (!(rho[k] >= 0 && rho[k] <= 1 && tau[k] >= 0 && tau[k] <= 1))
+        refuse(file, text("its material '", quotable(at->second[i]), "' reflects ", rho[k], " and passes ", tau[k],
+                          " of the light, which is outside [0, 1]"));
     materials[i].reflectance = {rho[3 * i], rho[3 * i + 1], rho[3 * i + 2]};
     materials[i].transmittance = {tau[3 * i], tau[3 * i + 1], tau[3 * i + 2]};
   }
@@ -177,6 +182,8 @@ SceneAround around_of(const Tables& tables, const WrittenResult& result, const s
     around.sky.radiance.channels = result.channels();
     around.sky.radiance.value = tables.numbers(arrays::kSky, result.channels(), SkyTable::kRows * SkyTable::kColumns);
   }
+  if (const auto files = result.texts.find(arrays::kSceneFiles); files != result.texts.end())
+    around.files = files->second;
   around.sensors = sensors_of(tables, result);
   const auto at = tables.positions(arrays::kLuminairePositions);
   const auto flux = tables.numbers(arrays::kLuminaireFlux, 1, at.size());
@@ -226,7 +233,9 @@ WrittenResult read_result(const std::filesystem::path& file) {
     double p[3];
     data->GetPoint(static_cast<vtkIdType>(i), p);
     result.points[i] = {p[0], p[1], p[2]};
-    if (!is_finite(result.points[i])) refuse(file, text("point ", i, " has a coordinate that is no number"));
+    for (const double x : p)
+      if (!(std::abs(x) <= kFarthest))
+        refuse(file, text("point ", i, " has the coordinate ", x, ", and all are within ", kFarthest, " m"));
   }
   vtkCellArray* cells = data->GetPolys();
   if (data->GetNumberOfCells() != cells->GetNumberOfCells()) refuse(file, "has other cells than triangles");
@@ -254,6 +263,14 @@ WrittenResult read_result(const std::filesystem::path& file) {
     if (const int n = at->second.components; n != 1 && !(coloured && n == 3))
       refuse(file, text("its array '", name, "' has ", n, " components"));
   }
+  if (result.of_points["irradiance"].components != result.of_points["radiosity"].components)
+    refuse(file, "its arrays 'irradiance' and 'radiosity' are not of as many components");
+  for (const auto& [name, array] : result.of_points)
+    if (array.value.size() != static_cast<std::size_t>(array.components) * result.points.size())
+      refuse(file, text("its array '", quotable(name), "' has another number of rows than there are points"));
+  for (const auto& [name, array] : result.of_cells)
+    if (array.value.size() != static_cast<std::size_t>(array.components) * result.triangles.size())
+      refuse(file, text("its array '", quotable(name), "' has another number of rows than there are cells"));
   for (const auto& [name, array] : result.of_points)
     for (const float value : array.value)
       if (!std::isfinite(value)) refuse(file, text("its array '", name, "' has a value that is no number"));

@@ -8,6 +8,7 @@ namespace clerestory::arrays {
 inline constexpr int kFormatNumber = 1;
 inline constexpr const char* kFormat = "result_format";
 inline constexpr const char* kReport = "report";
+inline constexpr const char* kSceneFiles = "scene_files";
 inline constexpr const char* kMaterialNames = "material_names";
 inline constexpr const char* kMaterialKinds = "material_kinds";
 inline constexpr const char* kMaterialReflectance = "material_reflectance";

@@ -180,6 +180,8 @@ void add_luminaires(vtkFieldData* to, const std::vector<ShownLuminaire>& luminai
 void add_around(vtkFieldData* to, const PatchSet& patches, const SceneAround& around, const RunReport& report) {
   add_indices(to, arrays::kFormat, 1, [](std::size_t) { return arrays::kFormatNumber; });
   add_names(to, arrays::kReport, 1, [&](std::size_t) { return repeatable_text(report); });
+  if (!around.files.empty())
+    add_names(to, arrays::kSceneFiles, around.files.size(), [&](std::size_t i) { return around.files[i]; });
   add_materials(to, patches.materials);
   add_panes(to, around.panes);
   if (!around.sky.empty()) add_field(to, arrays::kSky, around.sky.radiance);

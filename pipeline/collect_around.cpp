@@ -63,8 +63,12 @@ std::vector<PaneTriangle> panes_of(const PatchSet& patches) {
 }
 
 SceneAround collect_around(const Scene& scene, const Solved& solved) {
-  return {daylight_reference(scene.lights), solved.panes, sky_table(scene.lights, solved.patches.channels),
-          measured_sensors(scene.sensors, solved.sensor_E), shown_luminaires(scene.lights.luminaires)};
+  return {daylight_reference(scene.lights),
+          solved.panes,
+          sky_table(scene.lights, solved.patches.channels),
+          measured_sensors(scene.sensors, solved.sensor_E),
+          shown_luminaires(scene.lights.luminaires),
+          {scene.files.begin(), scene.files.end()}};
 }
 
 }  // namespace clerestory

@@ -16,20 +16,33 @@ std::optional<std::string> text_of(const WrittenResult& result, const char* name
   return at->second.front();
 }
 
+/// A file by the name that it had for who solved: there, in the same place as seen from the result, or beside it.
+std::optional<std::filesystem::path> find(const std::filesystem::path& named, const std::filesystem::path& result) {
+  namespace fs = std::filesystem;
+  const fs::path folder = result.parent_path();
+  for (const fs::path& place : {named, folder / named, folder / named.filename()}) {
+    std::error_code unknown;
+    if (!named.empty() && fs::is_regular_file(place, unknown)) return place;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::filesystem::path file_of_scene(const WrittenResult& result, const std::filesystem::path& file,
                                     const std::string& advice) {
-  namespace fs = std::filesystem;
   const std::string input = text_of(result, "input").value_or("");
-  const fs::path folder = file.parent_path();
-  for (const fs::path& place : {fs::path(input), folder / input, folder / fs::path(input).filename()}) {
-    std::error_code unknown;
-    if (!input.empty() && fs::is_regular_file(place, unknown)) return place;
-  }
+  if (const auto place = find(input, file)) return *place;
   throw InputError(text(result.file, ": was solved for ",
                         input.empty() ? "a scene without a name" : quotable(input, 200),
                         ", which is not there any more; ", advice, "."));
+}
+
+std::vector<std::filesystem::path> files_of_scene(const WrittenResult& result, const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& named : result.around.files)
+    if (const auto place = find(named, file)) files.push_back(*place);
+  return files;
 }
 
 Scene read_scene_of(const WrittenResult& result, const std::filesystem::path& file,

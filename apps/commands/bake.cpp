@@ -106,7 +106,6 @@ Counts write_with_atlas(const Arguments& arguments, const WrittenResult& result,
                         Console& console) {
   const LightmapAtlas atlas =
       make_atlas(result, arguments.texels_per_metre.value_or(Arguments::kTexelsPerMetre), console.monitor());
-  if (console.should_stop()) return {};
   const BakedMesh mesh = with_atlas(baked_points(result), atlas);
   write_atlas_exr(outputs.open(arguments.beside(Arguments::kExr)), atlas);
   if (arguments.has(Arguments::kExr)) write_atlas_json(outputs.open(arguments.beside(Arguments::kJson)), atlas, result);
@@ -141,6 +140,7 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
     if (file.is_written) check_writable(file.file);
   if (arguments.wants_atlas()) require_picture_files();
   const WrittenResult result = read_result(arguments.input);
+  console.has_read(files_of_scene(result, arguments.input));
   const double exposure = exposure_of(result, arguments.exposure);
   Outputs outputs;
   Counts counts;
@@ -150,10 +150,6 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
     counts = write_model_detail(outputs.open(arguments.output), result, arguments, console, exposure);
   else
     counts = write_light_detail(outputs.open(arguments.output), result, exposure);
-  if (console.should_stop()) {
-    console.warn("interrupted; nothing is written.");
-    return kInterrupted;
-  }
   RunReport report = new_report(arguments.input);
   report.counts.triangles = counts.triangles;
   report.counts.points = counts.points;

@@ -183,7 +183,7 @@ void add_formfactors_command(CLI::App& program, Task& task) {
   command.add_option("-o,--output", arguments->output, "one row per ordered pair: from,to,F,std_error,visibility")
       ->type_name("F.csv")
       ->required();
-  require_extension(command, "--output", ".csv");
+  require_extension(command, "--output", {".csv"});
   add_checked_word(command, "--by", arguments->by, problem_with_group,
                    "object, material, surface (the faces of an object in one plane) or patch (each triangle) "
                    "(default: object)");

@@ -65,7 +65,7 @@ void add_mesh_command(CLI::App& program, Task& task) {
   command.add_option("-o,--output", arguments->output, "the patches, for ParaView")
       ->type_name("PATCHES.vtp")
       ->required();
-  require_extension(command, "--output", ".vtp");
+  require_extension(command, "--output", {".vtp"});
   add_positive_option(command, "--max-element", arguments->solve.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
   add_detail_option(command, arguments->solve.detail);

@@ -9,6 +9,7 @@
 #include "io/atomic_file.h"
 #include "io/picture/encode.h"
 #include "io/read_result.h"
+#include "pipeline/scene_of_result.h"
 #include "pipeline/view/render_view.h"
 #include "pipeline/wording.h"
 
@@ -32,13 +33,9 @@ ExitCode render_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   require_picture_files();
   const WrittenResult result = read_result(arguments.input);
-  console.has_read({arguments.input});
+  console.has_read(files_of_scene(result, arguments.input));
   const RenderedView view =
       render_view(result, arguments.input, arguments.view, arguments.as_exr(), console, console.monitor());
-  if (view.bytes.empty()) {
-    console.warn("interrupted before the picture was complete; nothing is written.");
-    return kInterrupted;
-  }
   RunReport report = new_report(arguments.input);
   report.counts.triangles = result.triangles.size();
   Outputs outputs;
@@ -90,14 +87,9 @@ void add_camera_options(CLI::App& command, ViewRequest& view, bool& fits) {
       command.add_option("--camera", view.camera, "a camera of the glTF model that was solved, by its name")
           ->type_name("NAME");
   CLI::Option* fit = command.add_flag("--fit", fits, "from outside above a corner into the rooms; the default");
-  CLI::Option* plan = command
-                          .add_option_function<double>(
-                              "--plan",
-                              [&view](const double& z) {
-                                view.cut = Cut{2, z};
-                              },
-                              "a plan of what is below this height in metres, to scale, +y up")
-                          ->type_name("Z");
+  CLI::Option* plan =
+      add_words(command, "--plan", "Z", "a plan of what is below this height in metres, to scale, +y up",
+                [&view](const std::string& words) { return read_plan(words, view.cut); });
   CLI::Option* section =
       add_words(command, "--section", "x=X|y=Y", "a section seen along +x or +y from that place in metres, to scale",
                 [&view](const std::string& words) { return read_section(words, view.cut); });
@@ -123,13 +115,8 @@ void add_render_command(CLI::App& program, Task& task) {
       .add_option("-o,--output", arguments->output,
                   "the picture; an .exr holds the values themselves: lux, cd/m2, %, of colours W/(m2 sr)")
       ->type_name("VIEW.png|.exr")
-      ->required()
-      ->check(CLI::Validator(
-          [](std::string& file) {
-            return file.ends_with(".png") || file.ends_with(".exr") ? std::string()
-                                                                    : file + " does not end in .png or .exr";
-          },
-          ""));
+      ->required();
+  require_extension(command, "--output", {".png", ".exr"});
   add_camera_options(command, view, arguments->fits);
   add_words(command, "--size", "WIDTHxHEIGHT", "of the view in pixels; a legend comes beside it (default: 1920x1080)",
             [&view](const std::string& words) { return read_size(words, view.width, view.height); });
@@ -141,9 +128,7 @@ void add_render_command(CLI::App& program, Task& task) {
                   "colour, luminance, illuminance, daylight_factor or another array on the points of the result "
                   "(default: colour)")
       ->type_name("NAME");
-  command.add_option("--exposure", view.ev, "of true colours: stops brighter than the automatic one (default: 0)")
-      ->type_name("EV")
-      ->check(CLI::Range(-50.0, 50.0));
+  add_exposure_option(command, view.ev);
   add_words(command, "--range", "LOW:HIGH", "of false colours, in the unit shown (default: around what is seen)",
             [&view](const std::string& words) { return read_range(words, view.range); });
   command.add_flag("--log-scale", view.log_scale, "false colours by logarithm");

@@ -9,6 +9,7 @@
 #include "io/atomic_file.h"
 #include "io/read_result.h"
 #include "io/read_run_report.h"
+#include "pipeline/scene_of_result.h"
 #include "pipeline/wording.h"
 
 namespace clerestory {
@@ -24,8 +25,8 @@ ExitCode report_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   const PageFiles files = read_page_files();
   const WrittenResult result = read_result(arguments.input);
+  console.has_read(files_of_scene(result, arguments.input));
   const ReportTargets targets = report_targets(arguments.targets);
-  require_known_sets(targets, result);
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();
 
@@ -48,7 +49,7 @@ void add_report_command(CLI::App& program, Task& task) {
   command.add_option("-o,--output", arguments->output, "the page; it needs no other file and no network")
       ->type_name("REPORT.html")
       ->required();
-  require_extension(command, "--output", ".html");
+  require_extension(command, "--output", {".html"});
   add_target_option(command, arguments->targets);
   add_common_options(command, arguments->common);
   command.footer("example: clerestory report office.vtp -o office.html --target 300 --target 'desk height=500'");

@@ -151,7 +151,7 @@ void add_solve_command(CLI::App& program, Task& task) {
   CLI::App& command = *program.add_subcommand("solve", "read, mesh, solve, write: the main job");
   add_input_options(command, arguments->input, arguments->read);
   command.add_option("-o,--output", arguments->output, "the result, for ParaView")->type_name("OUT.vtp")->required();
-  require_extension(command, "--output", ".vtp");
+  require_extension(command, "--output", {".vtp"});
   SolveArguments& s = arguments->solve;
   add_checked_word(
       command, "--method", s.method, problem_with_method,

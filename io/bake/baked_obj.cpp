@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "io/bake/baked_files.h"
+#include "io/text.h"
 #include "solver/model/exposure.h"
 
 namespace clerestory {
@@ -66,7 +67,8 @@ void write_baked_obj(AtomicFile& file, const BakedMesh& mesh, const BakedNames& 
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t t = order[k];
     if (k == 0 || mesh.surface[t] != mesh.surface[order[k - 1]]) {
-      lines << "o " << names.surfaces[mesh.surface[t]];
+      const std::string name = clean_text(names.surfaces[mesh.surface[t]]);
+      lines << "o " << (name.empty() ? text("surface ", mesh.surface[t] + 1) : name);
       lines.end();
     }
     lines << "f";

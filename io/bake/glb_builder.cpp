@@ -137,4 +137,11 @@ void GlbBuilder::write(AtomicFile& file) {
   file.write(binary_);
 }
 
+Json without_extensions(Json thing) {
+  if (thing.is_object()) thing.erase("extensions");
+  for (Json& part : thing)
+    if (part.is_structured()) part = without_extensions(std::move(part));
+  return thing;
+}
+
 }  // namespace clerestory

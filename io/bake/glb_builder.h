@@ -58,4 +58,7 @@ class GlbBuilder {
 /// From the scene's frame to that of glTF, y up: the inverse of (x, y, z) -> (x, -z, y). No -0.
 inline constexpr Vec3 y_up(const Vec3& p) { return {p.x, p.z, 0.0 - p.y}; }
 
+/// A thing of another file as the core of glTF knows it: extensions in it would have to be declared.
+nlohmann::json without_extensions(nlohmann::json thing);
+
 }  // namespace clerestory

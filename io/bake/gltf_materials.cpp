@@ -73,7 +73,7 @@ void GltfMaterials::copy_texture(const Json& from, const char* key, std::size_t 
   if (set > 0) copy["texCoord"] = set;
   if (!transform.empty()) {
     glb_.use(kTransform);
-    copy["extensions"][kTransform] = transform;
+    copy["extensions"][kTransform] = without_extensions(transform);
   }
   to[key] = std::move(copy);
 }
@@ -100,7 +100,7 @@ std::optional<std::size_t> GltfMaterials::texture(std::size_t index) {
   if (from.contains("sampler")) {
     const std::size_t sampler = whole_number(file_, from, "sampler", 0, "textures");
     const auto [known, unknown] = samplers_.try_emplace(sampler);
-    if (unknown) known->second = glb_.add("samplers", file_.element("samplers", sampler));
+    if (unknown) known->second = glb_.add("samplers", without_extensions(file_.element("samplers", sampler)));
     to["sampler"] = known->second;
   }
   return at->second = glb_.add("textures", std::move(to));

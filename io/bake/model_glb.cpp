@@ -60,7 +60,7 @@ class Graft {
     if (from.contains("camera")) {
       const std::size_t camera = whole_number(model_.file, from, "camera", 0, where);
       const auto [at, is_new] = cameras_.try_emplace(camera);
-      if (is_new) at->second = glb_.add("cameras", model_.file.element("cameras", camera));
+      if (is_new) at->second = glb_.add("cameras", without_extensions(model_.file.element("cameras", camera)));
       to["camera"] = at->second;
     }
     if (const Json& lamp = extension(from, kLamps); lamp.contains("light")) {
@@ -70,7 +70,7 @@ class Graft {
       if (is_new) {
         glb_.use(kLamps);
         Json& lamps = glb_.root()["extensions"][kLamps]["lights"];
-        lamps.push_back(all.at("lights").at(light));
+        lamps.push_back(without_extensions(all.at("lights").at(light)));
         at->second = lamps.size() - 1;
       }
       to["extensions"][kLamps]["light"] = at->second;

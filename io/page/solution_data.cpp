@@ -38,8 +38,11 @@ Order order_of(const WrittenResult& r) {
   Order order;
   order.triangles.resize(r.triangles.size());
   std::iota(order.triangles.begin(), order.triangles.end(), 0u);
+  std::vector<bool> is_outdoors;
+  for (const std::string& room : r.rooms) is_outdoors.push_back(room == kOutdoors);
   const auto key = [&](std::uint32_t i) {
-    return std::tuple(is_outside(r, i), r.room.empty() ? 0 : r.room[i], r.surface[i], r.material[i]);
+    return std::tuple(!r.room.empty() && is_outdoors[r.room[i]], r.room.empty() ? 0 : r.room[i], r.surface[i],
+                      r.material[i]);
   };
   std::ranges::stable_sort(order.triangles, std::less(), key);
   std::vector<std::uint32_t> number(r.points.size(), kNone);

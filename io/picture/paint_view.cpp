@@ -126,7 +126,7 @@ Pixels with_legend(const Pixels& picture, const ValueScale& scale, const std::st
                 3 * picture.width, both.at(0, y));
 
   constexpr Ink kBlack{0, 0, 0};
-  const double left = picture.width + margin, top = 4 * size, bottom = picture.height - 1.5 * size;
+  const double left = picture.width + margin, top = 4 * size, bottom = std::max(picture.height - 1.5 * size, top + 2);
   Chart words{both.width, both.height, {}};
   words.shapes.push_back(Chart::Words{left, 1.4 * size, size, Chart::Anchor::start, quantity, kBlack});
   words.shapes.push_back(Chart::Words{left, 2.7 * size, size, Chart::Anchor::start, unit, kBlack});

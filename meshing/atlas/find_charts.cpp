@@ -18,11 +18,12 @@ using Triangles = std::vector<std::uint32_t>;
 using Pair = std::array<std::uint32_t, 2>;
 
 constexpr std::uint32_t kNone = 0xffffffff;
-constexpr double kFlat = 0.01;          // of a texel: corners this near to a plane lie in it
-constexpr double kLargeFacet = 256;     // texels: from here on a facet of a bent surface is a chart of its own
-constexpr double kBend = 25;            // degrees; texels are longer than asked for by 1 / cos at most
-constexpr double kFull = 0.85;          // share of its rectangle from which on a chart is left as it is
-constexpr double kWorthACut = 0.92;     // of the texels, with what gutters cost
+constexpr double kFlat = 0.01;       // of a texel: corners this near to a plane lie in it
+constexpr double kLargeFacet = 256;  // texels: from here on a facet of a bent surface is a chart of its own
+constexpr double kBend = 25;         // degrees; texels are longer than asked for by 1 / cos at most
+constexpr double kFull = 0.85;       // share of its rectangle from which on a chart is left as it is
+constexpr double kWorthACut = 0.92;  // of the texels, with what gutters cost
+constexpr std::size_t kMany = 4096, kUneven = 16;
 constexpr double kSmall = 300;          // texels that are not worth a cut
 constexpr int kBeyondAnyAtlas = 20000;  // texels
 
@@ -402,7 +403,11 @@ class ChartFinder {
       if (texels.size() > 1 &&
           (is_long || !found.to_part.empty() || (all > kSmall && static_cast<double>(found.used) < kFull * all))) {
         std::array<Triangles, 2> order;
-        const Cut c = best_cut(texels, found.to_part, is_long, order);
+        Cut c = best_cut(texels, found.to_part, is_long, order);
+        // Peeling a few triangles off a large piece, and again, would take forever.
+        if (const std::size_t less = std::min(c.first, texels.size() - c.first);
+            texels.size() > kMany && kUneven * less < texels.size())
+          c = best_cut(texels, found.to_part, true, order);
         if (is_long || !found.to_part.empty() || c.cost < kWorthACut * all) {
           for (const bool second : {false, true}) {
             Triangles part;

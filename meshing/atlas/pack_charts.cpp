@@ -60,7 +60,9 @@ std::array<int, 2> pack_charts(std::vector<AtlasChart>& charts) {
     bool standing;
   };
   std::vector<Try> tries;
-  const int widths = charts.size() < 300 ? 96 : charts.size() < 3000 ? 32 : 12;
+  // A layout takes as long as charts times the steps of its skyline: the more there are, the fewer are tried.
+  const bool are_many = charts.size() > 30'000;
+  const int widths = charts.size() < 300 ? 96 : charts.size() < 3000 ? 32 : are_many ? 3 : 12;
   const std::array<std::vector<stbrp_rect>, 2> rects{rectangles(charts, false), rectangles(charts, true)};
   for (const bool standing : {false, true}) {
     int widest = 4;
@@ -69,8 +71,8 @@ std::array<int, 2> pack_charts(std::vector<AtlasChart>& charts) {
       const double around = std::sqrt(area / 0.95) * (0.7 + 0.8 * i / widths);
       const int width = multiple_of_4(std::max(widest, static_cast<int>(around)));
       if (width > kLargestAtlas) continue;
-      for (const int heuristic : {STBRP_HEURISTIC_Skyline_BL_sortHeight, STBRP_HEURISTIC_Skyline_BF_sortHeight})
-        tries.push_back({width, heuristic, standing});
+      tries.push_back({width, STBRP_HEURISTIC_Skyline_BL_sortHeight, standing});
+      if (!are_many) tries.push_back({width, STBRP_HEURISTIC_Skyline_BF_sortHeight, standing});
     }
   }
   std::vector<std::int64_t> size(tries.size(), 0);

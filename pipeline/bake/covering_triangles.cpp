@@ -79,7 +79,7 @@ class Cover {
   /// Faces that the mesher simplified are so far from where they were, at most.
   static double moved(const WrittenResult& result) {
     const auto by = result.figures.find("repairs.simplified_by");
-    return by != result.figures.end() ? by->second : 0;
+    return by != result.figures.end() ? std::clamp(by->second, 0.0, 1e3 * rounding_of(result)) : 0;
   }
 
   /// Of the result, or a pane behind those.

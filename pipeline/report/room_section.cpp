@@ -24,8 +24,7 @@ std::string name_of(const std::string& name) { return name.empty() ? "(without a
 
 std::string lux_words(double lux) {
   if (lux > 0 && lux < 0.005) return "< 0.01";
-  return std::abs(lux) >= 1000 && std::abs(lux) < 1e15 ? grouped(static_cast<unsigned long long>(std::llround(lux)))
-                                                       : rounded(lux);
+  return lux >= 1000 && lux < 1e15 ? grouped(static_cast<unsigned long long>(std::llround(lux))) : rounded(lux);
 }
 
 std::string ratio_words(double ratio) {

@@ -58,6 +58,7 @@ struct SceneAround {
   SkyTable sky{};
   std::vector<MeasuredSensors> sensors{};  ///< empty when there was no time for them
   std::vector<ShownLuminaire> luminaires{};
+  std::vector<std::string> files{};  ///< that the scene was read from, as they were named
 };
 
 }  // namespace clerestory

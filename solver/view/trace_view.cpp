@@ -135,7 +135,7 @@ class ViewScene::Tile {
     SightPacket packet;
     for (std::size_t k = 0; k < waiting_; ++k) packet.add(ways_[k].origin, ways_[k].direction, ways_[k].near);
     Sights sights;
-    scene_.surfaces_.look(packet, sights, true);
+    scene_.surfaces_.look(packet, sights);
     for (std::size_t k = 0; k < waiting_; ++k) {
       if (sights.triangle[k] != Sights::kNothing)
         take_surface(ways_[k], sights.triangle[k], sights.u[k], sights.v[k]);
@@ -148,8 +148,9 @@ class ViewScene::Tile {
   }
 
   void add(const Way& way, int channel, double value) {
+    const double most = way.sample == kStandsForSome ? kOneOf * options_.most : options_.most;
     sum_[way.pixel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel)] +=
-        std::min(way.weight[channel] * value, options_.most);
+        std::min(way.weight[channel] * value, most);
   }
 
   void take_surface(const Way& way, std::uint32_t triangle, float u, float v) {

@@ -126,7 +126,7 @@ SeenSurfaces::~SeenSurfaces() = default;
 const Vec3& SeenSurfaces::centre() const { return impl_->centre; }
 double SeenSurfaces::diagonal() const { return impl_->diagonal; }
 
-void SeenSurfaces::look(const SightPacket& rays, Sights& sights, bool alike) const {
+void SeenSurfaces::look(const SightPacket& rays, Sights& sights) const {
   alignas(64) int valid[16];
   RTCRayHit16 packet;
   for (std::size_t k = 0; k < 16; ++k) {
@@ -138,7 +138,7 @@ void SeenSurfaces::look(const SightPacket& rays, Sights& sights, bool alike) con
     packet.ray.mask[k] = ~0u, packet.ray.id[k] = 0, packet.ray.flags[k] = 0;
     packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   }
-  Context c = context(alike ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  Context c = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
   rtcIntersect16(valid, impl_->scene, &c.embree, &packet);
   for (std::size_t k = 0; k < 16; ++k) {
     sights.triangle[k] = packet.hit.geomID[k] == kTriangles ? packet.hit.primID[k] : Sights::kNothing;

@@ -47,8 +47,7 @@ class SeenSurfaces {
   /// How far a ray starts from what it leaves, for floats to tell [m].
   double lift() const { return 1e-6 * diagonal(); }
 
-  /// alike: the rays go nearly the same way; quicker then.
-  void look(const SightPacket& rays, Sights& sights, bool alike) const;
+  void look(const SightPacket& rays, Sights& sights) const;
 
   /// Of one ray from a point outside of the frame, in unit direction: how far it goes to what it meets first;
   /// infinite when that is nothing [m].

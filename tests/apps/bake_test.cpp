@@ -35,6 +35,16 @@ class Bake : public testing::Test {
   std::string scene_ = box_.write(folder_), result_ = folder_ / "room.vtp";
 };
 
+TEST_F(Bake, WritesOverNoFileOfTheSceneThatWasSolved) {
+  const std::string model = folder_ / "room.obj", before = read_text(model), scene = read_text(scene_);
+  expect_refusal({result_, "-o", model}, 3, "room.obj");
+  expect_refusal({result_, "-o", folder_ / "a.ply", "--report", scene_}, 3, "room.json");
+  const std::string exr = fs::path(scene_).replace_extension(".exr").string();
+  expect_refusal({result_, "-o", exr}, 3, "room.json");  // its charts would be
+  EXPECT_EQ(read_text(model), before);
+  EXPECT_EQ(read_text(scene_), scene);
+}
+
 TEST_F(Bake, ALitRoomHasTheLightOfTheSolutionInEveryFormatAndDetail) {
   // Every surface receives B = M / (1 - rho), up to what a draft errs.
   for (const char* detail : {"light", "model"}) {

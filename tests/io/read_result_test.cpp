@@ -16,7 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A triangle with light on both of its sides, far from the origin, in a room.
-void write_sheet(const fs::path& file, const SceneAround& around = {}) {
+void write_sheet(
+    const fs::path& file, const SceneAround& around = {},
+    const std::function<void(PatchSet&)>& change = [](PatchSet&) {}) {
   PatchSet patches;
   patches.origin = {1e6, -2e6, 50};
   patches.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}};
@@ -28,6 +30,7 @@ void write_sheet(const fs::path& file, const SceneAround& around = {}) {
   patches.surfaces = {"sheet"};
   make_patches(patches, {true, true});
   patches.room = {1, 0}, patches.rooms = {"outdoors", "R1"};
+  change(patches);
   Solution solution;
   solution.E = solution.B = Field(2, 3);
   VertexLightmap lightmap;
@@ -99,6 +102,20 @@ std::string refused(const fs::path& file) {
     return e.what();
   }
   return {};
+}
+
+TEST(ReadResult, RefusesWhatNoSceneHolds) {
+  const TempFolder folder;
+  const auto refusal = [&](const std::function<void(PatchSet&)>& change) {
+    write_sheet(folder / "a.vtp", {}, change);
+    return refused(fs::path(folder / "a.vtp"));
+  };
+  EXPECT_EQ(refusal([](PatchSet&) {}), "");
+  EXPECT_NE(refusal([](PatchSet& p) { p.origin.x = 1e14; }).find("point 0 has the coordinate 1e+14"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal([](PatchSet& p) { p.materials[0].reflectance = Spectrum(1.5); }).find("its material 'wall' reflects 1.5"),
+      std::string::npos);
 }
 
 TEST(ReadResult, RefusesWhatNoSolveWroteAndSaysWhy) {

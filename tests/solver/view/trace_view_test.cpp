@@ -116,6 +116,21 @@ TEST(TraceView, ShowsThroughGlassWhatItPassesAndReflects) {
   expect_all(scene_of(r, illuminance_of(r)).trace(kStraight, {}), 10, 1);
 }
 
+TEST(TraceView, ClipsABrightReflectionAsMuchByOneRayOfFourAsByAll) {
+  // Of 10,000 behind the eye a pane turns back a few per cent, far above the 5 that are white.
+  WrittenResult r = empty_result();
+  add_quad(r, square_at(3), 0, 0);
+  add_quad(r, turned(square_at(-5, 4)), 10'000, 10'000);
+  Material glass;
+  glass.kind = MaterialKind::glass, glass.transmittance = Spectrum(0.65);
+  add_pane(r, square_at(2), glass);
+  const ViewScene scene = scene_of(r, radiance_of(r));
+  for (const int samples : {15, 16}) {
+    SCOPED_TRACE(samples);
+    expect_all(scene.trace(kStraight, {.samples = samples, .most = 5}), 5, 1);
+  }
+}
+
 TEST(TraceView, SeesTheSkyByRadianceOnly) {
   WrittenResult r = empty_result();
   add_quad(r, turned(square_at(-5)), 1, 1);

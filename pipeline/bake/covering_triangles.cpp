@@ -55,7 +55,7 @@ class Cover {
         model_(model),
         lit_count_(result.triangles.size()),
         rounding_(rounding_of(result)),
-        tolerance_(rounding_ + 2 * moved(result)),
+        tolerance_(rounding_ + moved(result)),
         tree_(lit_count_ + result.around.panes.size(), BoxOf{this}) {}
   Cover(const Cover&) = delete;  // the tree looks here
   Cover& operator=(const Cover&) = delete;
@@ -168,8 +168,7 @@ class Cover {
       const Vec3 q = face[k] + inwards * std::min(0.5, 2 * rounding_ / length(inwards));
       const auto found = at(q, normal, off_rim(face, q));
       for (std::size_t side = 0; side < 2; ++side) by[side][k] = found[side].triangle;
-      const bool on_pane = found[2].triangle != CornerCover::kNone;
-      panes += on_pane && by[0][k] == CornerCover::kNone && by[1][k] == CornerCover::kNone;
+      panes += found[2].triangle != CornerCover::kNone && found[2].away <= std::min(found[0].away, found[1].away);
     }
     if (panes >= 2) {
       std::ranges::fill(covering, CornerCover{CornerCover::kPane, {}, false});

@@ -135,6 +135,25 @@ TEST(LightOnModel, GlassIsLeftOut) {
   EXPECT_TRUE(lit.parts[2].triangles.empty()) << "whichever way it faces";
 }
 
+TEST(LightOnModel, WhatWasSimplifiedIsFoundBesideWhereItIsButNotInPlaceOfAPane) {
+  // A pane 5 mm under a lit sheet, and a face 3 mm off the result's, where it was moved by up to 10 mm.
+  WrittenResult r = empty_result();
+  r.figures["repairs.simplified_by"] = 0.01;
+  add_rectangle(r, {}, {1, 0, 0}, {0, 1, 0}, 2, linear);
+  add_rectangle(r, {5, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, linear);
+  r.around.panes = {{{Vec3{0, 0, -0.005}, Vec3{1, 0, -0.005}, Vec3{1, 1, -0.005}}, 0, 0},
+                    {{Vec3{0, 0, -0.005}, Vec3{1, 1, -0.005}, Vec3{0, 1, -0.005}}, 0, 0}};
+  const std::vector<ModelPart> parts = {rectangle({}, {1, 0, 0}, {0, 1, 0}),
+                                        rectangle({0, 0, -0.005}, {1, 0, 0}, {0, 1, 0}),
+                                        rectangle({5, 0, 0.003}, {1, 0, 0}, {0, 1, 0})};
+  const LitModel lit = light_on_model(r, parts);
+  EXPECT_TRUE(lit.parts[1].triangles.empty());
+  EXPECT_EQ(lit.missing_share, 0);
+  for (const std::size_t p : {std::size_t{0}, std::size_t{2}})
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(lit.parts[p].E.at(i, 0) / linear(parts[p].position[i]), 1, 1e-5) << p << " " << i;
+}
+
 TEST(LightOnModel, TellsHowMuchOfTheResultIsOnNoFace) {
   WrittenResult r = empty_result();
   add_rectangle(r, {}, {1, 0, 0}, {0, 3, 0}, 4, linear);

@@ -141,6 +141,7 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
     if (file.is_written) check_writable(file.file);
   if (arguments.wants_atlas()) require_picture_files();
   const WrittenResult result = read_result(arguments.input);
+  console.has_read(places_of_scene(result, arguments.input));  // office.exr has an office.json beside it
   const double exposure = exposure_of(result, arguments.exposure);
   Outputs outputs;
   Counts counts;

@@ -108,6 +108,17 @@ TEST_F(BakeAtlas, WhatCannotBeIsRefusedBeforeTheWork) {
   EXPECT_FALSE(exists("taken.glb") || exists("taken.exr") || exists("no.glb") || exists("no.exr") || exists("no.png"));
 }
 
+TEST_F(BakeAtlas, NeverTakesThePlaceOfTheScene) {
+  // room.exr would have a room.json beside it, which is the scene.
+  const std::string scene = read_text(*folder_ / "room.json");
+  const ProgramRun run = bake({"-o", *folder_ / "room.exr"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("room.json: is a file of the scene; its name comes from -o: choose another"), run.err.npos)
+      << run.err;
+  EXPECT_EQ(read_text(*folder_ / "room.json"), scene);
+  EXPECT_FALSE(exists("room.exr"));
+}
+
 TEST_F(BakeAtlas, IsTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(bake({"-o", *folder_ / "one.glb", "--texels-per-metre", "15", "--threads", "1"}).exit_code, 0);
   ASSERT_EQ(bake({"-o", *folder_ / "two.glb", "--texels-per-metre", "15", "--threads", "3"}).exit_code, 0);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "meshing/atlas/plane_on_texels.h"
 #include "meshing/atlas/raster.h"
 #include "meshing/atlas/smallest_rectangle.h"
 #include "solver/model/disjoint_sets.h"
@@ -23,6 +24,7 @@ constexpr double kLargeFacet = 256;     // texels: from here on a facet of a ben
 constexpr double kBend = 25;            // degrees; texels are longer than asked for by 1 / cos at most
 constexpr double kFull = 0.85;          // share of its rectangle from which on a chart is left as it is
 constexpr double kWorthACut = 0.92;     // of the texels, with what gutters cost
+constexpr double kSameLight = 0.01;     // relative; a texel for two lights that differ by less is half of that off
 constexpr double kSmall = 300;          // texels that are not worth a cut
 constexpr int kBeyondAnyAtlas = 20000;  // texels
 
@@ -70,7 +72,10 @@ struct Inspection {
 class ChartFinder {
  public:
   ChartFinder(const WrittenResult& result, double texels_per_metre)
-      : result_(result), texels_per_metre_(texels_per_metre), across_(triangles_across(result)) {
+      : result_(result),
+        E_(result.of_points.at("irradiance")),
+        texels_per_metre_(texels_per_metre),
+        across_(triangles_across(result)) {
     for (const auto& [a, b, c] : result.triangles) {
       const Vec3 n = cross(result.points[b] - result.points[a], result.points[c] - result.points[a]) * 0.5;
       normal_.push_back(normalized(n));
@@ -262,7 +267,7 @@ class ChartFinder {
             const std::uint32_t list = list_of[cell(i, j)];
             here.insert(here.end(), entry.begin() + start[list], entry.begin() + start[list + 1]);
           }
-        note_strangers(chart, here, found.to_part);
+        note_strangers(chart, texels, {double{1} * x, double{1} * y}, here, found.to_part);
       }
     note_overlaps(texels, columns, rows, found.to_part);
     std::sort(found.to_part.begin(), found.to_part.end());
@@ -280,8 +285,10 @@ class ChartFinder {
     return found;
   }
 
-  /// Of triangles (places in the chart's list) that one texel is reached from: pairs that do not hang together there.
-  void note_strangers(const AtlasChart& chart, Triangles& here, std::vector<Pair>& pairs) const {
+  /// Of triangles (places in the chart's list) that one texel is reached from: pairs that do not hang together there
+  /// and have other light.
+  void note_strangers(const AtlasChart& chart, const std::vector<std::array<Texel, 3>>& texels, const Texel& texel,
+                      Triangles& here, std::vector<Pair>& pairs) const {
     std::sort(here.begin(), here.end());
     here.erase(std::unique(here.begin(), here.end()), here.end());
     if (here.size() < 2) return;
@@ -294,8 +301,39 @@ class ChartFinder {
         const auto found = std::lower_bound(here.begin(), here.end(), static_cast<std::uint32_t>(place));
         if (found != here.end() && *found == place) sets.join(i, static_cast<std::size_t>(found - here.begin()));
       }
+    bool are_together = true;
+    for (std::size_t i = 1; i < here.size(); ++i) are_together = are_together && sets.find(i) == sets.find(0);
+    if (are_together) return;
+    std::vector<Mean> mean(here.size());
+    for (std::size_t i = 0; i < here.size(); ++i)
+      mean[sets.find(i)].add(light_at(chart.triangles[here[i]], texels[here[i]], texel));
     for (std::size_t i = 1; i < here.size(); ++i)
-      if (sets.find(i) != sets.find(0)) pairs.push_back({here[0], here[i]});
+      if (sets.find(i) != sets.find(0) && mean[sets.find(i)].differs_from(mean[sets.find(0)]))
+        pairs.push_back({here[0], here[i]});
+  }
+
+  struct Mean {
+    Spectrum sum;
+    double count = 0;
+    void add(const Spectrum& x) { sum += x, count += 1; }
+    bool differs_from(const Mean& other) const {
+      const Spectrum a = sum / count, b = other.sum / other.count;
+      bool differs = false;
+      for (int k = 0; k < kMaxChannels; ++k)
+        differs = differs || std::abs(a[k] - b[k]) > kSameLight * std::max(std::abs(a[k]), std::abs(b[k]));
+      return differs;
+    }
+  };
+
+  /// Irradiance of the triangle's plane at a texel.
+  Spectrum light_at(std::uint32_t t, const std::array<Texel, 3>& texels, const Texel& texel) const {
+    const auto& [a, b, c] = corners(t);
+    const auto n = static_cast<std::size_t>(E_.components);
+    Spectrum light;
+    for (std::size_t k = 0; k < n; ++k)
+      light[static_cast<int>(k)] =
+          plane_of(texels, {E_.value[a * n + k], E_.value[b * n + k], E_.value[c * n + k]}).beyond(texel[0], texel[1]);
+    return light;
   }
 
   /// Triangles of which both have the middle of a cell inside.
@@ -420,6 +458,7 @@ class ChartFinder {
   }
 
   const WrittenResult& result_;
+  const WrittenArray& E_;
   double texels_per_metre_;
   std::vector<std::array<std::uint32_t, 3>> across_;
   std::vector<Vec3> normal_;  ///< unit; zero where a triangle has no area

@@ -12,8 +12,8 @@ namespace clerestory {
 /// Flat parts of a surface are charts by projection on their plane; smaller facets that bend by at most 25 degrees are
 /// projected together. A chart hangs together over edges whose two points are shared, is turned to its smallest
 /// rectangle, and cut where
-/// - a lookup would mix triangles that do not hang together there: two sides of a partition on one floor, parts of a
-///   bent surface that lie over each other,
+/// - a lookup would mix triangles that do not hang together there and differ by more than a percent in their light: two
+///   sides of a partition on one floor; or parts of a bent surface that lie over each other,
 /// - it is longer than kLongestChart, or
 /// - it leaves much of its rectangle empty.
 /// Cuts follow edges; no triangle is divided.

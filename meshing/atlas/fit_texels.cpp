@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <tuple>
 
+#include "meshing/atlas/plane_on_texels.h"
 #include "meshing/atlas/raster.h"
 
 namespace clerestory {
@@ -18,34 +18,6 @@ constexpr double kDark = 1e-3;        // of the chart's largest value: below it 
 constexpr double kStay = 1e-3;        // weight of x0; that of all samples around a texel is 0.44
 constexpr int kRounds = 60;
 constexpr double kSolved = 1e-7;  // residual, as a share of the first
-
-/// Value of a channel on a triangle: at + x grad_x + y grad_y [per texel].
-struct Plane {
-  double at = 0, grad_x = 0, grad_y = 0;
-  double lowest = 0, highest = 0;  ///< at the corners
-  double operator()(double x, double y) const { return at + x * grad_x + y * grad_y; }
-  /// The same outside, no farther away than the corners are from each other.
-  double beyond(double x, double y) const {
-    return std::clamp((*this)(x, y), 2 * lowest - highest, 2 * highest - lowest);
-  }
-};
-
-Plane plane_of(const std::array<Texel, 3>& t, const std::array<double, 3>& f) {
-  const double ux = t[1][0] - t[0][0], uy = t[1][1] - t[0][1], vx = t[2][0] - t[0][0], vy = t[2][1] - t[0][1];
-  const double det = ux * vy - uy * vx;
-  const double longest = std::max({std::hypot(ux, uy), std::hypot(vx, vy), std::hypot(ux - vx, uy - vy)});
-  Plane plane;
-  std::tie(plane.lowest, plane.highest) = std::minmax({f[0], f[1], f[2]});
-  // Needles tell nothing across.
-  if (std::abs(det) > 1e-3 * longest * longest && longest > 1e-3) {
-    const double du = f[1] - f[0], dv = f[2] - f[0];
-    plane.grad_x = (du * vy - dv * uy) / det;
-    plane.grad_y = (dv * ux - du * vx) / det;
-  }
-  const double mean = (f[0] + f[1] + f[2]) / 3;
-  plane.at = mean - plane.grad_x * (t[0][0] + t[1][0] + t[2][0]) / 3 - plane.grad_y * (t[0][1] + t[1][1] + t[2][1]) / 3;
-  return plane;
-}
 
 /// Normal equations on a grid. Of the symmetric matrix, each texel's row holds itself and the four neighbours that come
 /// after it: right; left, middle and right below.
@@ -61,7 +33,7 @@ class Equations {
         start_(right_side_.size(), 0.0) {}
 
   /// A sample at (x, y): its values, and the planes that they are of.
-  void add(double x, double y, double weight, std::span<const double> f, std::span<const Plane> planes) {
+  void add(double x, double y, double weight, std::span<const double> f, std::span<const PlaneOnTexels> planes) {
     const auto i = std::min(static_cast<std::size_t>(x), width_ - 2),
                j = std::min(static_cast<std::size_t>(y), height_ - 2);
     const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
@@ -87,7 +59,7 @@ class Equations {
   }
 
   /// The texels of a cell that a triangle touches: they go on as its planes do where no sample says more.
-  void touch(int column, int row, std::span<const Plane> planes) {
+  void touch(int column, int row, std::span<const PlaneOnTexels> planes) {
     const std::size_t at = static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column);
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t i = at + k % 2 + k / 2 * width_;
@@ -259,7 +231,7 @@ std::vector<float> fit_texels(const WrittenResult& result, const AtlasChart& cha
 
   Equations equations(chart.width, chart.height, value.channels);
   std::vector<double> f(channels);
-  std::vector<Plane> planes(channels);
+  std::vector<PlaneOnTexels> planes(channels);
   for (const std::uint32_t t : chart.triangles) {
     const auto& points = result.triangles[t];
     std::array<Texel, 3> corner;

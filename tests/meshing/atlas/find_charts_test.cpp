@@ -132,7 +132,7 @@ TEST(FindCharts, AFloorIsCutAlongAPartitionThatEndsInIt) {
   floor.add_grid(rectangle({0, 0, 0}, {8, 0, 0}, {0, 8, 0}), 16, 16, one);
   std::vector<std::uint32_t> twin(floor.result.points.size(), 0);
   for (std::uint32_t p = 0; p < twin.size(); ++p)
-    if (const Vec3 at = floor.result.points[p]; at.x == 4 && at.y < 4) twin[p] = floor.add_point(at, 1);
+    if (const Vec3 at = floor.result.points[p]; at.x == 4 && at.y < 4) twin[p] = floor.add_point(at, 1.5);
   for (auto& triangle : floor.result.triangles) {
     double middle = 0;
     for (const std::uint32_t p : triangle) middle += floor.result.points[p].x / 3;

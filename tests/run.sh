@@ -24,7 +24,7 @@ for argument in "$@"; do
 done
 
 bash apps/install_dependencies.sh libgtest-dev
-bash tests/gltf/install.sh || echo "gltf-validator and three.js could not be installed: their test is skipped." >&2
+bash tests/gltf/install.sh || echo "gltf-validator could not be installed: its test is skipped." >&2
 cmake --preset release -DCLERESTORY_BUILD_TESTS=ON
 cmake --build --preset release
 ctest --preset release --parallel "$(nproc)" --no-label-summary "${to_ctest[@]}"

@@ -4,36 +4,37 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/box_scene.h"
 #include "tests/support/run_program.h"
+#include "tests/support/solved_box.h"
 
 namespace clerestory {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A closed room with sensors, solved once for all.
+/// A closed room with sensors.
 class Report : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = new TempFolder;
-    std::string scene = read_text(BoxScene{}.write(*folder_));
-    scene.insert(scene.find('{') + 1,
-                 R"("sensors": [{"name": "desk", "origin": [0.5, 0.5, 0.8], "u": [3, 0, 0], "v": [0, 2, 0],
-                    "spacing": 0.5, "normal": [0, 0, 1]}],)");
-    folder_->write("lit.json", scene);
-    solved_ = run_program({"solve", *folder_ / "lit.json", "-o", *folder_ / "lit.vtp", "--accuracy", "draft"});
+  Report() {
+    MeasuredSensors desk;
+    desk.set.name = "desk";
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 6; ++i) {
+        desk.set.points.push_back({{0.75 + 0.5 * i, 0.75 + 0.5 * j, 0.8}, {0, 0, 1}});
+        desk.illuminance.push_back(400 + 10.0 * i);
+      }
+    SolvedBox lit;
+    lit.around.sensors = {desk};
+    result_ = lit.write(folder_);
   }
-  static void TearDownTestSuite() { delete folder_; }
-  void SetUp() override { ASSERT_EQ(solved_.exit_code, 0) << solved_.err; }
 
-  static std::string in_folder(const std::string& name) { return *folder_ / name; }
-  static ProgramRun report(std::vector<std::string> more) {
-    more.insert(more.begin(), {"report", in_folder("lit.vtp")});
+  std::string in_folder(const std::string& name) { return folder_ / name; }
+  ProgramRun report(std::vector<std::string> more) {
+    more.insert(more.begin(), {"report", result_});
     return run_program(more);
   }
   /// It says why, and leaves no page.
-  static void expect_refused(const std::vector<std::string>& more, int code, const std::string& words) {
+  void expect_refused(const std::vector<std::string>& more, int code, const std::string& words) {
     fs::remove(in_folder("no.html"));
     const ProgramRun run = report(more);
     EXPECT_EQ(run.exit_code, code) << run.err;
@@ -41,9 +42,8 @@ class Report : public testing::Test {
     EXPECT_FALSE(fs::exists(in_folder("no.html")));
   }
 
- private:
-  inline static TempFolder* folder_ = nullptr;
-  inline static ProgramRun solved_;
+  TempFolder folder_;
+  std::string result_;
 };
 
 TEST_F(Report, WritesOnePageThatIsTheSameEachTime) {
@@ -53,7 +53,7 @@ TEST_F(Report, WritesOnePageThatIsTheSameEachTime) {
   const std::string page = read_text(in_folder("a.html"));
   EXPECT_TRUE(page.starts_with("<!DOCTYPE html>")) << page.substr(0, 100);
   EXPECT_TRUE(page.ends_with("</html>\n"));
-  EXPECT_NE(page.find("<h1>lit.json</h1>"), std::string::npos);
+  EXPECT_NE(page.find("<h1>room.json</h1>"), std::string::npos);
   EXPECT_NE(page.find("the target</span>"), std::string::npos);
   ASSERT_EQ(report({"-o", in_folder("b.html"), "--target", "desk=500", "--threads", "1"}).exit_code, 0);
   EXPECT_EQ(page, read_text(in_folder("b.html")));
@@ -63,7 +63,7 @@ TEST_F(Report, RefusesWhatItCannotUse) {
   const std::string no = in_folder("no.html");
   expect_refused({"-o", no, "--target", "desc=500"}, 3, "did you mean 'desk'?");
   expect_refused({"-o", no, "--target", "desk=much"}, 2, "LUX or NAME=LUX");
-  expect_refused({"-o", no, "--target", "-5"}, 2, "");
+  expect_refused({"-o", no, "--target", "-5"}, 2, "above 0 lx");
   expect_refused({"-o", no, "--target", "nan"}, 2, "above 0 lx");
   expect_refused({"-o", in_folder("no.pdf")}, 2, "does not end in .html");
   expect_refused({}, 2, "--output");
@@ -71,7 +71,7 @@ TEST_F(Report, RefusesWhatItCannotUse) {
 }
 
 TEST_F(Report, RefusesWhatIsNoResult) {
-  const std::string whole = read_text(in_folder("lit.vtp"));
+  const std::string whole = read_text(result_);
   const auto refused = [&](const std::string& content, const std::string& words) {
     const TempFolder own;
     const std::string page = own / "no.html";
@@ -86,11 +86,11 @@ TEST_F(Report, RefusesWhatIsNoResult) {
 }
 
 TEST_F(Report, NeverWritesOverItsInput) {
-  const std::string before = read_text(in_folder("lit.vtp"));
-  fs::create_symlink(in_folder("lit.vtp"), in_folder("link.html"));
+  const std::string before = read_text(result_);
+  fs::create_symlink(result_, in_folder("link.html"));
   const ProgramRun run = report({"-o", in_folder("link.html")});
   EXPECT_EQ(run.exit_code, 3) << run.err;
-  EXPECT_EQ(read_text(in_folder("lit.vtp")), before);
+  EXPECT_EQ(read_text(result_), before);
 }
 
 }  // namespace

@@ -7,8 +7,9 @@ import { dirname, join } from 'node:path';
 import validator from 'gltf-validator';
 
 globalThis.self = globalThis;  // three.js asks a browser for it
-const { EXRLoader } = await import('three/addons/loaders/EXRLoader.js');
-const { FloatType } = await import('three');
+const three = '../../io/page/node_modules/three';
+const { EXRLoader } = await import(`${three}/examples/jsm/loaders/EXRLoader.js`);
+const { FloatType } = await import(`${three}/build/three.module.js`);
 
 const kShare = 0.97, kWithin = 0.01;  // of the area; elements finer than texels are the rest
 const kLeast = 1e-3;                  // of the largest illuminance: darker than that counts as that

@@ -1,23 +1,13 @@
 #!/usr/bin/env bash
 # Gets Debian's ParaView into build/paraview, once: beside the system and not into it, because python3-paraview excludes
-# libvtk9-dev, which the build needs. apt-get chooses what belongs to it as if it were installed: the libraries that are
-# not there yet, and today's updates of those that are.
+# libvtk9-dev, which the build needs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 bash apps/install_dependencies.sh xvfb  # the screen that Debian's ParaView wants even when it draws none
+. tests/support/get_beside.sh
 here=$PWD/build/paraview
-if [ ! -d "$here/root" ]; then
-  echo "ParaView: downloading 120 MB to build/paraview"
-  as_root=()
-  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
-  rm -rf "$here" && mkdir -p "$here/packages/partial"
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" apt-get install -y -qq --no-install-recommends --download-only \
-    -o Dir::Cache::archives="$here/packages" -o APT::Sandbox::User=root paraview python3-paraview libexpat1 >/dev/null
-  for package in "$here"/packages/*.deb; do dpkg -x "$package" "$here/unfinished"; done
-  mv "$here/unfinished" "$here/root"
-fi
+get_beside "$here" 120 paraview python3-paraview libexpat1
 
 # With the expat of before, ParaView opened files that it refuses with today's.
 expat=$(dpkg-deb --field "$here"/packages/libexpat1_*.deb Version 2>/dev/null ||

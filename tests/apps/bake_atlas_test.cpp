@@ -96,17 +96,6 @@ TEST_F(BakeAtlas, WhatCannotBeIsRefusedBeforeTheWork) {
   EXPECT_FALSE(exists("taken.glb") || exists("taken.exr") || exists("no.glb") || exists("no.exr") || exists("no.png"));
 }
 
-TEST_F(BakeAtlas, NeverTakesThePlaceOfTheScene) {
-  // room.exr would have a room.json beside it, which is the scene.
-  const std::string scene = read_text(*folder_ / "room.json");
-  const ProgramRun run = bake({"-o", *folder_ / "room.exr"});
-  EXPECT_EQ(run.exit_code, 3);
-  EXPECT_NE(run.err.find("room.json: is a file of the scene; its name comes from -o: choose another"), run.err.npos)
-      << run.err;
-  EXPECT_EQ(read_text(*folder_ / "room.json"), scene);
-  EXPECT_FALSE(exists("room.exr"));
-}
-
 TEST_F(BakeAtlas, IsTheSameForAnyNumberOfThreads) {
   SolvedBox varied;
   varied.E = [](const Vec3& p) { return 100 + 10 * p.x + 20 * p.y + 30 * p.z; };

@@ -64,7 +64,9 @@ std::string SolvedBox::write(const TempFolder& folder) const {
     solution.E.set(i, Spectrum(irradiance((p[0] + p[1] + p[2]) / 3)));
     solution.B.set(i, Spectrum(box.M) + Spectrum(box.rho) * solution.E[i]);
   }
-  write_result(file, patches, lightmap, solution, around, new_report(scene));
+  SceneAround all = around;
+  all.files = {scene, folder / "room.obj"};
+  write_result(file, patches, lightmap, solution, all, new_report(scene));
   return file;
 }
 

@@ -8,6 +8,7 @@
 #include "io/page/css_colour.h"
 #include "io/picture/colour_map.h"
 #include "io/picture/iso_lines.h"
+#include "io/picture/round_numbers.h"
 #include "io/text.h"
 
 namespace clerestory {
@@ -30,12 +31,6 @@ std::string number(double x, int digits = 1) {
 }
 
 std::string hex(int colour) { return css_colour(colour / (kColours - 1.0)); }
-
-/// The largest of 1, 2 or 5 times a power of ten that is not above `most`.
-double round_step(double most) {
-  const double power = std::pow(10, std::floor(std::log10(most)));
-  return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
-}
 
 /// Metres to pixels, y down.
 struct Scale {
@@ -183,7 +178,7 @@ std::string legend_of(const Plan& plan, const Scale& scale, std::size_t number_o
 }
 
 std::string scale_bar(const Scale& scale) {
-  const double metres = round_step(scale.width() / 4 / scale.px);
+  const double metres = round_down(scale.width() / 4 / scale.px);
   const double y = scale.height() + 14, end = kEdge + metres * scale.px;
   return text("<path class=\"scale\" d=\"M", number(kEdge), " ", number(y - 4), "V", number(y), "H", number(end), "V",
               number(y - 4), "\"/>\n<text x=\"", number(end + 6), "\" y=\"", number(y + 3), "\">",
@@ -209,7 +204,7 @@ std::vector<double> isolux_levels(double lowest, double highest) {
   if (levels.size() > kMost) levels.erase(levels.begin(), levels.end() - kMost);
   if (levels.size() < kLeast && highest > lowest) {
     levels.clear();
-    const double step = round_step((highest - lowest) / kLeast);
+    const double step = round_down((highest - lowest) / kLeast);
     for (double k = std::floor(lowest / step) + 1; k * step < highest * (1 - 1e-12); ++k) levels.push_back(k * step);
   }
   return levels;

@@ -4,23 +4,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "io/picture/round_numbers.h"
+
 namespace clerestory {
 namespace {
-
-/// The smallest of 1, 2, 5 x 10^n that is no less than x > 0.
-double round_up(double x) {
-  const double decade = std::pow(10.0, std::floor(std::log10(x) + 1e-9));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (x <= step * decade * (1 + 1e-9)) return step * decade;
-  return 10 * decade;
-}
-/// The largest that is no more.
-double round_down(double x) {
-  const double decade = std::pow(10.0, std::floor(std::log10(x) + 1e-9));
-  for (const double step : {5.0, 2.0})
-    if (x >= step * decade * (1 - 1e-9)) return step * decade;
-  return decade;
-}
 
 double quantile(std::vector<float>& values, double share) {
   const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);

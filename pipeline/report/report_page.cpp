@@ -1,9 +1,9 @@
 #include "pipeline/report/report_page.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 
+#include "io/input_file.h"
 #include "io/page/html_table.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
@@ -29,7 +29,7 @@ std::string project_of(const WrittenResult& result, const RunReport& run) {
   const std::string input = !run.input.empty()         ? run.input
                             : at != result.texts.end() ? at->second.front()
                                                        : result.file;
-  return std::filesystem::path(input).filename().string();
+  return short_name(input);
 }
 
 std::string key_figures(const std::vector<RoomFigures>& rooms, const std::vector<SensorSummary>& sets,

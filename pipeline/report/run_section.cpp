@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/input_file.h"
 #include "io/page/html_table.h"
 #include "io/text.h"
 #include "pipeline/report/page_sections.h"
@@ -10,8 +11,6 @@ namespace clerestory {
 namespace {
 
 constexpr std::size_t kMostRows = 100;
-
-std::string file_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
 
 std::string list_of(const std::vector<std::string>& lines, const char* kind) {
   std::string out = text("<ul class=\"", kind, "\">\n");
@@ -97,7 +96,7 @@ std::string luminaire_section(const RunReport& run) {
     const RunReport::Luminaires& l = run.luminaires[i];
     count += l.count, flux += l.luminous_flux;
     if (i >= kMostRows) continue;
-    const std::string name = l.type == "file" ? file_name(l.file) : l.type;
+    const std::string name = l.type == "file" ? short_name(l.file) : l.type;
     table.add({name, l.group, grouped(l.count),
                lux_words(l.luminous_flux / static_cast<double>(std::max<std::size_t>(l.count, 1))),
                lux_words(l.luminous_flux), l.lamp_flux > 0 ? percent(l.file_flux / l.lamp_flux) : std::string()});
@@ -121,7 +120,7 @@ std::string daylight_section(const WrittenResult& result, const RunReport& run,
   if (run.daylight) {
     const Daylight& d = *run.daylight;
     if (d.weather)
-      facts.emplace_back("Weather", text(file_name(d.weather->file), ", month ", d.weather->month, ", day ",
+      facts.emplace_back("Weather", text(short_name(d.weather->file), ", month ", d.weather->month, ", day ",
                                          d.weather->day, ", the hour that ends at ", d.weather->hour, ":00"));
     if (d.time) {
       const long minutes = std::lround(d.time->hour * 60);
@@ -198,7 +197,7 @@ std::string error_section(const RunReport& run) {
 
 std::string run_section(const WrittenResult& result, const RunReport& run) {
   std::string out = "<section>\n<h2 id=\"computation\">Computation</h2>\n";
-  std::vector<std::pair<std::string, std::string>> facts = {{"Scene", file_name(run.input)}, {"Method", run.method}};
+  std::vector<std::pair<std::string, std::string>> facts = {{"Scene", short_name(run.input)}, {"Method", run.method}};
   for (const Figure& setting : run.settings)
     if (setting.name != "method" && setting.name != "threads")
       facts.emplace_back(spaced(setting.name) + (setting.name == "max_element" ? " [m]" : ""), value_words(setting));

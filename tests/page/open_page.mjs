@@ -1,40 +1,17 @@
 // Opens a page as a client does, clicks into its 3D view, and holds what it says against the result:
-//   node open_page.mjs CHROMIUM PAGE.html RESULT.vtp [SCREENSHOT.png]
+//   node open_page.mjs PAGE.html RESULT.vtp CHROMIUM FOLDER   screenshots go there
 
+import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 import { Chromium } from './chromium.mjs';
-import { Vtp } from './vtp.mjs';
+import { LitSurfaces } from './vtp.mjs';
 
-const [program, page, result, screenshot] = process.argv.slice(2);
+const [page, result, program, folder] = process.argv.slice(2);
 const kTolerance = 2e-3;  // illuminance is told in steps of 0.02 %, places in float of the scene's size
 
 const problems = [];
 const expect = (good, ...what) => good || problems.push(what.join(' '));
-
-/** Illuminances that the result has at a place of a surface in a room. */
-function valuesAt(vtp, { place, surface, room }) {
-  const points = vtp.numbers('Points', 'Points'), corners = vtp.numbers('Polys', 'connectivity');
-  const lux = vtp.numbers('PointData', 'illuminance');
-  const ofSurface = vtp.numbers('CellData', 'surface'), surfaces = vtp.strings('surface_names');
-  const ofRoom = vtp.numbers('CellData', 'room'), rooms = vtp.strings('room_names');
-  const size = points.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
-  const minus = (a, b) => a.map((x, k) => x - b[k]);
-  const dot = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
-  const found = [];
-  for (let t = 0; 3 * t < corners.length; ++t) {
-    if (surfaces[ofSurface[t]] !== surface || rooms[ofRoom[t]] !== room) continue;
-    const p = [0, 1, 2].map((k) => points.slice(3 * corners[3 * t + k], 3 * corners[3 * t + k] + 3));
-    const [u, v, w] = [minus(p[1], p[0]), minus(p[2], p[0]), minus(place, p[0])];
-    const [uu, uv, vv, wu, wv] = [dot(u, u), dot(u, v), dot(v, v), dot(w, u), dot(w, v)];
-    const area = uu * vv - uv * uv, s = (vv * wu - uv * wv) / area, q = (uu * wv - uv * wu) / area;
-    const off = minus(w, u.map((x, k) => s * x + q * v[k]));
-    if (Math.min(s, q, 1 - s - q) < -1e-4 || Math.sqrt(dot(off, off)) > 1e-5 * size) continue;
-    const [a, b, c] = [0, 1, 2].map((k) => lux[corners[3 * t + k]]);
-    found.push((1 - s - q) * a + s * b + q * c);
-  }
-  return found;
-}
 
 const browser = new Chromium(program);
 try {
@@ -45,7 +22,7 @@ try {
   await browser.evaluate(`document.getElementById('view-canvas').scrollIntoView({ block: 'center' })`);
   const box = await browser.evaluate(`(({ left, top, width, height }) => ({ left, top, width, height }))(document.getElementById('view-canvas').getBoundingClientRect())`);
 
-  const vtp = new Vtp(result);
+  const surfaces = new LitSurfaces(result);
   let hits = 0;
   for (const [x, y] of [[0.5, 0.5], [0.45, 0.6], [0.55, 0.45], [0.5, 0.62], [0.6, 0.55], [0.4, 0.5], [0.01, 0.01]]) {
     await browser.click(box.left + x * box.width, box.top + y * box.height);
@@ -57,7 +34,7 @@ try {
       continue;
     }
     ++hits;
-    const values = valuesAt(vtp, probe);
+    const values = surfaces.at(probe).map((found) => found.lux);
     expect(values.some((lux) => Math.abs(lux - probe.lux) <= kTolerance * Math.max(lux, 0.01)),
       `at ${probe.place} on '${probe.surface}' it says ${probe.lux} lx, and the result`, values.join(', ') || 'has no such place');
     expect(words.includes(probe.surface) && words.includes('lx'), 'the words are', words);
@@ -74,7 +51,7 @@ try {
     expect(after !== before, `${id} (${change}) changes nothing`);
     before = after;
   }
-  if (screenshot) await browser.screenshot(screenshot);
+  await browser.screenshot(path.join(folder, `${path.basename(page, '.html')}.png`));
   const pdf = await browser.pdf();
   expect(pdf.subarray(0, 5).toString() === '%PDF-' && pdf.length > 10000, 'it cannot be printed');
   expect(await browser.evaluate(`document.getElementById('view-print').src.startsWith('data:image/png')`), 'the view is not printed');

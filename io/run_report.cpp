@@ -249,7 +249,6 @@ Json repeatable_json(const RunReport& report) {
   if (report.error) json["error"]["spaces"] = array_of(report.error_spaces);
   if (report.error && report.worst_space) json["error"]["worst"] = json_of(report.error_spaces[*report.worst_space]);
   if (report.error_sensors) json["error_sensors"]["sets"] = array_of(report.error_sets);
-  if (!report.laws.empty()) json["laws"] = array_of(report.laws);
   if (!report.luminaires.empty()) json["luminaires"] = array_of(report.luminaires);
   if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
   if (!report.spaces.empty()) json["spaces"] = array_of(report.spaces);
@@ -271,6 +270,7 @@ std::string repeatable_text(const RunReport& report) { return text_of(repeatable
 void write_report(AtomicFile& file, const RunReport& report) {
   Json json = repeatable_json(report);
   for (const Figure& figure : run_figures(report)) set(json, figure);
+  if (!report.laws.empty()) json["laws"] = array_of(report.laws);
   json["log"] = report.log;
   file.write(text_of(json, 2) + "\n");
 }

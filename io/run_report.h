@@ -95,7 +95,8 @@ std::string stop_name(StopReason stop);
 /// The figures that are the same for every run with these settings: no times, no memory, no thread count.
 std::vector<Figure> repeatable_figures(const RunReport& report);
 
-/// The report as JSON, without what differs from run to run with these settings: times, memory, threads, the log.
+/// The report as JSON, without what differs from run to run with these settings, and what was only
+/// looked at: times, memory, threads, the log, laws.
 std::string repeatable_text(const RunReport& report);
 
 /// Writes the report as JSON, into a file that the caller commits or a whole one.

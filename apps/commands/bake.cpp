@@ -15,6 +15,7 @@
 #include "pipeline/scene_of_result.h"
 #include "pipeline/wording.h"
 #include "solver/model/bake_points.h"
+#include "solver/model/error.h"
 #include "solver/model/exposure.h"
 #include "solver/model/units.h"
 
@@ -66,13 +67,17 @@ Counts write_light_detail(AtomicFile& file, const WrittenResult& result, double 
   return {mesh.position.size(), mesh.triangles.size()};
 }
 
-constexpr double kChanged = 0.002;  ///< share of the surfaces; less is rounding
+constexpr double kChanged = 0.002, kAnother = 0.5;  ///< share of the surfaces; less is rounding, more another model
 
 Counts write_model_detail(AtomicFile& file, const WrittenResult& result, const Arguments& arguments, Console& console,
                           double exposure) {
   const Scene scene = read_scene_of(result, arguments.input, arguments.scene);
   console.has_read(scene.files);
   const BakedScene baked = bake_scene(result, scene);
+  if (baked.missing_share > kAnother)
+    throw InputError(scene.file + ": is not what " + result.file + " was solved for: it has no face where " +
+                     percent(baked.missing_share) +
+                     " of the surfaces there are; name the right one by --scene FILE, or solve this one.");
   if (baked.missing_share > kChanged)
     console.warn(scene.file + ": has no face where " + percent(baked.missing_share) +
                  " of the solution's surfaces are; was it changed? Then solve it again.");

@@ -35,8 +35,8 @@ ExitCode report_command(const Arguments& arguments, Console& console) {
   Outputs outputs;
   outputs.open(arguments.output).write(page);
   finish_report(report, arguments.common, console, outputs);
-  console.commit(outputs);
   console.say("results " + arguments.output + ", " + bytes(page.size()) + "; open it in a browser");
+  console.commit(outputs);
   return kDone;
 }
 

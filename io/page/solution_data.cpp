@@ -11,7 +11,7 @@
 #include "io/page/packed.h"
 #include "io/text.h"
 #include "solver/model/exposure.h"
-#include "solver/model/patch_set.h"
+#include "solver/model/inner_rooms.h"
 
 namespace clerestory {
 namespace {
@@ -30,18 +30,13 @@ struct Order {
   std::vector<std::uint32_t> runs;       ///< four a run
 };
 
-bool is_outside(const WrittenResult& r, std::size_t triangle) {
-  return !r.room.empty() && r.rooms[r.room[triangle]] == kOutdoors;
-}
-
 Order order_of(const WrittenResult& r) {
   Order order;
   order.triangles.resize(r.triangles.size());
   std::iota(order.triangles.begin(), order.triangles.end(), 0u);
-  std::vector<bool> is_outdoors;
-  for (const std::string& room : r.rooms) is_outdoors.push_back(room == kOutdoors);
+  const std::vector<bool> inner = inner_rooms(r);
   const auto key = [&](std::uint32_t i) {
-    return std::tuple(!r.room.empty() && is_outdoors[r.room[i]], r.room.empty() ? 0 : r.room[i], r.surface[i],
+    return std::tuple(!r.room.empty() && !inner[r.room[i]], r.room.empty() ? 0 : r.room[i], r.surface[i],
                       r.material[i]);
   };
   std::ranges::stable_sort(order.triangles, std::less(), key);
@@ -62,14 +57,16 @@ Order order_of(const WrittenResult& r) {
   return order;
 }
 
-/// Runs of triangles that can be looked at alone: all inside, each room, the outdoors, all.
+/// Runs of triangles that can be looked at alone: all inside, each room, open air, all.
 Json parts_of(const WrittenResult& r, const Order& order) {
   Json parts = Json::array();
   const std::size_t all = order.triangles.size();
   const auto add = [&](const std::string& name, std::size_t begin, std::size_t count) {
     parts.push_back({{"name", clean_text(name)}, {"begin", begin}, {"count", count}});
   };
-  const auto outside = std::ranges::find_if(order.triangles, [&](std::uint32_t i) { return is_outside(r, i); });
+  const std::vector<bool> inner = inner_rooms(r);
+  const auto outside =
+      std::ranges::find_if(order.triangles, [&](std::uint32_t i) { return !r.room.empty() && !inner[r.room[i]]; });
   const auto inside = static_cast<std::size_t>(outside - order.triangles.begin());
   if (inside > 0 && inside < all) add("all rooms", 0, inside);
   if (inside == 0 || inside == all) add(r.room.empty() ? "scene" : inside == 0 ? "outdoors" : "all rooms", 0, all);

@@ -8,7 +8,7 @@
 #include "io/text.h"
 #include "pipeline/report/section_lines.h"
 #include "pipeline/wording.h"
-#include "solver/model/patch_set.h"
+#include "solver/model/inner_rooms.h"
 
 namespace clerestory {
 namespace {
@@ -121,9 +121,10 @@ struct LevelFloor {
 
 std::vector<LevelFloor> floors_of(const WrittenResult& r, std::size_t most, bool outdoors) {
   constexpr double kUp = 0.95, kThick = 0.15, kLeastShare = 0.1;
+  const std::vector<bool> inner = inner_rooms(r);
   std::map<long, LevelFloor> levels;  // by centimetre
   for (std::size_t i = 0; i < r.triangles.size(); ++i) {
-    if (!outdoors && r.rooms[r.room[i]] == kOutdoors) continue;
+    if (!outdoors && !inner[r.room[i]]) continue;
     const auto& [a, b, c] = r.triangles[i];
     const Vec3 n = cross(r.points[b] - r.points[a], r.points[c] - r.points[a]);
     const double area = length(n) / 2;

@@ -10,7 +10,7 @@
 #include "pipeline/report/page_sections.h"
 #include "pipeline/wording.h"
 #include "solver/model/error.h"
-#include "solver/model/patch_set.h"
+#include "solver/model/inner_rooms.h"
 
 namespace clerestory {
 namespace {
@@ -35,7 +35,12 @@ std::string project_of(const WrittenResult& result, const RunReport& run) {
 std::string key_figures(const std::vector<RoomFigures>& rooms, const std::vector<SensorSummary>& sets,
                         const WrittenResult& result, const RunReport& run) {
   std::vector<std::pair<std::string, std::string>> key;
-  const auto inside = std::ranges::count_if(rooms, [](const RoomFigures& r) { return r.name != kOutdoors; });
+  const std::vector<bool> inner = inner_rooms(result);
+  const auto is_inner = [&](const std::string& name) {
+    const auto at = std::ranges::find(result.rooms, name);
+    return at != result.rooms.end() && inner[static_cast<std::size_t>(at - result.rooms.begin())];
+  };
+  const auto inside = std::ranges::count_if(rooms, is_inner, &RoomFigures::name);
   if (!result.room.empty()) key.emplace_back("Rooms with light", grouped(static_cast<unsigned long long>(inside)));
   if (!run.luminaires.empty()) {
     std::size_t count = 0;
@@ -56,8 +61,15 @@ std::string key_figures(const std::vector<RoomFigures>& rooms, const std::vector
   const auto met =
       std::ranges::count_if(sets, [](const SensorSummary& s) { return s.threshold && s.mean >= s.threshold->lux; });
   if (sets.size() > kFew && held > 0) key.emplace_back("Sensors whose mean meets the target", text(met, " of ", held));
-  if (run.worst_space) {
-    const RunReport::PartError& worst = run.error_spaces[*run.worst_space];
+  // Of rooms that people use; the error is told of all others further down.
+  const RunReport::PartError* worst_room = nullptr;
+  for (const RunReport::PartError& space : run.error_spaces)
+    if ((result.room.empty() || is_inner(space.name)) && space.error.samples > 0 &&
+        (!worst_room || space.error.rms_relative > worst_room->error.rms_relative))
+      worst_room = &space;
+  if (!worst_room && run.worst_space) worst_room = &run.error_spaces[*run.worst_space];
+  if (worst_room) {
+    const RunReport::PartError& worst = *worst_room;
     key.emplace_back("Measured error (rms), worst room",
                      (worst.error.bound ? "below " : "") + percent(worst.error.rms_relative));
   }

@@ -6,7 +6,7 @@
 #include "io/text.h"
 #include "pipeline/report/page_sections.h"
 #include "pipeline/wording.h"
-#include "solver/model/patch_set.h"
+#include "solver/model/inner_rooms.h"
 
 namespace clerestory {
 namespace {
@@ -16,9 +16,10 @@ namespace {
 std::pair<double, double> range_of(const WrittenResult& r) {
   std::vector<float> lux;
   const std::vector<float>& all = r.of_points.at("illuminance").value;
+  const std::vector<bool> inner = inner_rooms(r);
   const auto take = [&](bool outdoors) {
     for (std::size_t i = 0; i < r.triangles.size(); ++i)
-      if (outdoors || r.room.empty() || r.rooms[r.room[i]] != kOutdoors)
+      if (outdoors || r.room.empty() || inner[r.room[i]])
         for (const std::uint32_t p : r.triangles[i])
           if (all[p] > 0) lux.push_back(all[p]);
   };

@@ -10,7 +10,7 @@
 #include "pipeline/scene_of_result.h"
 #include "solver/model/box.h"
 #include "solver/model/error.h"
-#include "solver/model/patch_set.h"
+#include "solver/model/inner_rooms.h"
 
 namespace clerestory {
 namespace {
@@ -45,11 +45,12 @@ std::string extent_words(const WrittenResult& result, const Cut& cut) {
 }  // namespace
 
 std::vector<std::uint32_t> shown_triangles(const WrittenResult& result, const ViewRequest& request) {
+  const std::vector<bool> inner = inner_rooms(result);
   const bool rooms_only = request.is_drawing() && !request.outdoors && !result.room.empty();
   std::vector<std::uint32_t> all, of_rooms;
   for (std::uint32_t i = 0; i < result.triangles.size(); ++i) {
     all.push_back(i);
-    if (rooms_only && result.rooms[result.room[i]] != kOutdoors) of_rooms.push_back(i);
+    if (rooms_only && inner[result.room[i]]) of_rooms.push_back(i);
   }
   return of_rooms.empty() ? all : of_rooms;
 }

@@ -29,6 +29,8 @@ std::vector<RoomFigures> figures_by_room(const WrittenResult& result) {
     double area = 0, flux = 0, lowest = 0, highest = 0;
   };
   const std::vector<float>& lux = result.of_points.at("illuminance").value;
+  // Means of elements are what the balance of light and the measured error go by.
+  const auto means = result.of_cells.find("illuminance");
   std::map<std::pair<std::uint32_t, std::uint32_t>, Sum> sums;
   for (std::size_t i = 0; i < result.triangles.size(); ++i) {
     const double area = area_of(result, i);
@@ -39,7 +41,8 @@ std::vector<RoomFigures> figures_by_room(const WrittenResult& result) {
     sum.lowest = sum.area > 0 ? std::min(sum.lowest, lowest) : lowest;
     sum.highest = std::max(sum.highest, highest);
     sum.area += area;
-    sum.flux += area * (double{lux[a]} + lux[b] + lux[c]) / 3;
+    sum.flux += area * (means != result.of_cells.end() ? double{means->second.value[i]}
+                                                       : (double{lux[a]} + lux[b] + lux[c]) / 3);
   }
   std::map<std::uint32_t, RoomFigures> rooms;
   for (const auto& [key, sum] : sums) {

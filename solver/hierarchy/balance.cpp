@@ -69,6 +69,9 @@ class System {
     gather_(B_, arrives_of_B());
     find_ambient();
     take_step();
+    // Without it every sweep helps, as no row sums to more than 1.
+    if (residual() > kGrows * least_) uses_ambient_ = false;
+    least_ = std::min(least_, residual());
   }
 
   double residual() const {
@@ -149,7 +152,7 @@ class System {
     for (std::size_t s = 0; s < e_.size(); ++s)
       for (std::size_t l = 0; l < L; ++l) {
         const double loss = ambient_loss_[s].c[channel_[l]];
-        e_[s].lane[l] = loss > 0 ? e_[s].lane[l] / loss : 0;
+        e_[s].lane[l] = loss > 0 && uses_ambient_ ? e_[s].lane[l] / loss : 0;
       }
   }
 
@@ -168,6 +171,7 @@ class System {
   }
 
   static constexpr bool kBySteps = L == 8;
+  static constexpr double kGrows = 2;  ///< where spaces light each other so much that correcting each overshoots
 
   const PatchSet& p_;
   const Transport& transport_;
@@ -181,6 +185,8 @@ class System {
   std::vector<Spectrum> ambient_loss_;  ///< by space: sum A lost [m2]
   Lanes<L> scale_, left_;
   std::vector<Lanes<L>> e_;  ///< by space
+  bool uses_ambient_ = true;
+  double least_ = 1e300;  ///< residual so far
 };
 
 struct Sweeps {

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kReceiversInBlock = 64;
 constexpr std::size_t kBlocksInBatch = 64;  // between reports
 
-/// Hits of a receiver that tell which space it is in; kNone where there are fewer.
+/// Others that a receiver sees, which tell what space it is in; kNone where there are fewer.
 using Neighbours = std::array<std::uint32_t, 8>;
 
 /// What the links of all receivers are made from.
@@ -96,11 +96,18 @@ void write_views(const Workspace& work, Transport& transport) {
   }
 }
 
-void note_neighbours(std::span<const Hit> hits, Neighbours& neighbours) {
+/// Each once, and not itself: behind a mirror that hangs on a wall most of what a patch sees is its own image.
+void note_neighbours(std::span<const Hit> hits, const ReceiverArea& area, Neighbours& neighbours) {
   std::size_t met = 0;
+  const auto is_itself = [&](std::uint32_t q) {
+    return std::ranges::any_of(area.members(), [&](const ReceiverArea::Member& m) { return m.patch == q; });
+  };
   for (const Hit& hit : hits) {
     if (met == neighbours.size()) return;
-    if (hit.patch.valid()) neighbours[met++] = hit.patch.value;
+    if (!hit.patch.valid()) continue;
+    const std::uint32_t q = hit.patch.value;
+    const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(met);
+    if (std::find(neighbours.begin(), end, q) == end && !is_itself(q)) neighbours[met++] = q;
   }
 }
 
@@ -112,7 +119,7 @@ void link(const Receiver& receiver, const Given& given, Workspace& work, LinkBlo
   const int pairs = pairs_worth_sending(work.area, light, given.options.bright_rays, key);
   send_bundle(work.area, light.problem, given.net, key, work.bundle);
   find_arrivals(work.area, work.bundle, given.around, pairs, key, work.arrivals);
-  note_neighbours(work.bundle.hits, neighbours);
+  note_neighbours(work.bundle.hits, work.area, neighbours);
   write_views(work, transport);
   write_rows(receiver, given, work, out);
 }

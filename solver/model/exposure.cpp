@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/model/patch_set.h"
+#include "solver/model/inner_rooms.h"
 #include "solver/model/units.h"
 
 namespace clerestory {
@@ -29,9 +29,8 @@ double middle_of(const WrittenResult& result, const Counts& counts) {
 }  // namespace
 
 double exposure_of(const WrittenResult& result, double ev) {
-  const auto is_inside = [&](std::size_t i) {
-    return !result.room.empty() && result.rooms[result.room[i]] != kOutdoors;
-  };
+  const std::vector<bool> inner = inner_rooms(result);
+  const auto is_inside = [&](std::size_t i) { return !result.room.empty() && inner[result.room[i]]; };
   double lux = middle_of(result, is_inside);
   if (!(lux > 0)) lux = middle_of(result, [](std::size_t) { return true; });
   return lux > 0 ? std::exp2(ev) * kMiddleLight * kWhiteEfficacy / lux : 1;

@@ -20,6 +20,10 @@ enum Side : std::uint8_t { kFront = 0, kBack = 1 };
 
 /// Name of the room that all open air is.
 inline constexpr const char* kOutdoors = "outdoors";
+/// Of those that are too small to be told one by one.
+inline constexpr const char* kSmallerSpaces = "smaller spaces";
+/// Rooms that nobody gave a name are called so, with a number.
+inline constexpr const char* kUnnamedRoom = "room ";
 
 /// A node of the binary trees that part patches. The parted edge runs from corner `edge` to the next one; part 0 keeps
 /// its start and gets the corners (start, middle, apex), part 1 its end: (middle, end, apex).

@@ -286,10 +286,10 @@ Rooms numbered(const PatchSet& patches, const NamedRooms& named, std::vector<std
   for (const std::uint32_t l : order) {
     number[l] = static_cast<std::uint32_t>(rooms.names.size());
     rooms.names.push_back(l == air                  ? kOutdoors
-                          : l == small              ? "smaller spaces"
+                          : l == small              ? kSmallerSpaces
                           : l < named.spaces.size() ? named.spaces[l].name
                           : l < air                 ? named.by_surface[l - named.spaces.size()].name
-                                                    : "room " + std::to_string(++nameless));
+                                                    : kUnnamedRoom + std::to_string(++nameless));
   }
   rooms.of_patch.resize(n);
   for (std::size_t i = 0; i < n; ++i) rooms.of_patch[i] = number[label[i]];

@@ -294,6 +294,25 @@ TEST(Extremes, ALampLightsASensorInTheAirByTheInverseSquareFromAMicrometreToAKil
   row("lamp 1 um to 1 km from a sensor in the air, off by", 100 * worst, "%");
 }
 
+TEST(Extremes, AMirrorThatHangsOnAWallKeepsTheLightOfTheRoom) {
+  // In the gap behind it most of what a patch sees is itself, over the mirror: from 1 cm down the balance used to
+  // diverge.
+  for (const double gap : {0.02, 0.01, 0.002}) {
+    SCOPED_TRACE(testing::Message() << "gap " << gap << " m");
+    ModelText model;
+    const double x = 5 - gap;
+    model.object("room", "wall").box({0, 0, 0}, {5, 4, 3}, false);
+    model.object("mirror", "mirror").quad({Vec3{x, 0.5, 0.5}, {x, 0.5, 2.5}, {x, 3.5, 2.5}, {x, 3.5, 0.5}});
+    const Outcome out = solve_extreme(
+        model.text(), R"("materials": {"wall": {"reflectance": 0.8}, "mirror": {"type": "mirror", "reflectance": 0.9}},
+                         "luminaires": [{"type": "point", "position": [2.5, 2, 2.5], "luminous_flux": 3000}])",
+        {"--accuracy", "draft", "--no-error"});
+    ASSERT_EQ(out.run.exit_code, 0) << out.run.err;
+    EXPECT_LT(std::abs(out.figure("energy.imbalance")), 0.01);
+    EXPECT_LT(out.figure("iterations"), 100);
+  }
+}
+
 TEST(Extremes, AThousandLampsAddUp) {
   ModelText model;
   model.object("floor", "black").quad(flat(0, 0, 0, 100, 100));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/model/inner_rooms.h"
 #include "solver/model/patch_set.h"
 #include "solver/model/units.h"
 
@@ -35,6 +36,17 @@ TEST(ExposureOf, TakesTheOutdoorsWhereNoRoomIsLit) {
   const double expected = kMiddleLight * kWhiteEfficacy / 20'000;
   EXPECT_NEAR(exposure_of(squares({kOutdoors, "dark"}, {20'000, 0}), 0), expected, 1e-6 * expected);
   EXPECT_EQ(exposure_of(squares({kOutdoors}, {0}), 0), 1);
+}
+
+TEST(InnerRooms, AreThoseThatPeopleUse) {
+  WrittenResult r = squares({kOutdoors, "R301 Roof", "A101", "room 1", kSmallerSpaces}, {10'000, 8'700, 400, 2, 0});
+  EXPECT_EQ(inner_rooms(r), (std::vector<bool>{false, true, true, false, false}))
+      << "who knows how bright it is outside";
+  r.around.daylight_reference = 10'000;
+  EXPECT_EQ(inner_rooms(r), (std::vector<bool>{false, false, true, false, false}));
+  EXPECT_EQ(inner_rooms(squares({kOutdoors, "room 1", "room 2", kSmallerSpaces}, {1, 1, 1, 1})),
+            (std::vector<bool>{false, true, true, false}));
+  EXPECT_EQ(inner_rooms(squares({kOutdoors, kSmallerSpaces}, {1, 1})), (std::vector<bool>{false, true}));
 }
 
 TEST(SrgbByte, IsTheStandardsCurveClipped) {

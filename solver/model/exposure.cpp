@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "solver/model/inner_rooms.h"
 #include "solver/model/units.h"
@@ -9,10 +11,18 @@
 namespace clerestory {
 namespace {
 
-/// exp(mean of log of the illuminance), by area, of triangles that are lit; 0 where none is [lx].
+constexpr double kMostBelow = 0.8, kBrightLight = 0.8;
+
+/// Illuminance of the triangles that `counts` takes and that are lit, by area [lx]; 0 where none is.
+struct Brightness {
+  double middle = 0;  ///< geometric mean
+  double upper = 0;   ///< kMostBelow of the area have no more
+};
+
 template <class Counts>
-double middle_of(const WrittenResult& result, const Counts& counts) {
+Brightness brightness_of(const WrittenResult& result, const Counts& counts) {
   const std::vector<float>& lux = result.of_points.at("illuminance").value;
+  std::vector<std::pair<double, double>> lit;  // lux, m2
   double sum = 0, all = 0;
   for (std::size_t i = 0; i < result.triangles.size(); ++i) {
     if (!counts(i)) continue;
@@ -21,9 +31,15 @@ double middle_of(const WrittenResult& result, const Counts& counts) {
     if (!(mean > 0)) continue;
     const Vec3 x = result.points[a];
     const double area = length(cross(result.points[b] - x, result.points[c] - x)) / 2;
+    lit.emplace_back(mean, area);
     sum += area * std::log(mean), all += area;
   }
-  return all > 0 ? std::exp(sum / all) : 0;
+  if (!(all > 0)) return {};
+  std::sort(lit.begin(), lit.end());
+  double below = 0;
+  std::size_t k = 0;
+  while (k + 1 < lit.size() && below + lit[k].second < kMostBelow * all) below += lit[k++].second;
+  return {std::exp(sum / all), lit[k].first};
 }
 
 }  // namespace
@@ -31,9 +47,10 @@ double middle_of(const WrittenResult& result, const Counts& counts) {
 double exposure_of(const WrittenResult& result, double ev) {
   const std::vector<bool> inner = inner_rooms(result);
   const auto is_inside = [&](std::size_t i) { return !result.room.empty() && inner[result.room[i]]; };
-  double lux = middle_of(result, is_inside);
-  if (!(lux > 0)) lux = middle_of(result, [](std::size_t) { return true; });
-  return lux > 0 ? std::exp2(ev) * kMiddleLight * kWhiteEfficacy / lux : 1;
+  Brightness lux = brightness_of(result, is_inside);
+  if (!(lux.middle > 0)) lux = brightness_of(result, [](std::size_t) { return true; });
+  if (!(lux.middle > 0)) return 1;
+  return std::exp2(ev) * kWhiteEfficacy * std::min(kMiddleLight / lux.middle, kBrightLight / lux.upper);
 }
 
 double srgb_encoded(double linear) {

@@ -10,7 +10,8 @@ namespace clerestory {
 
 /// Factor [m2/W] from light, irradiance or radiosity, to linear values of a screen, of which 1 is white: 2^ev times
 /// the one that shows irradiance as it is in the middle of the rooms (geometric mean by area, open air left out
-/// where there are rooms) as kMiddleLight. 1 where no light is.
+/// where there are rooms) as kMiddleLight, or less, so that four fifths of them are no brighter than 0.8. 1 where no
+/// light is.
 double exposure_of(const WrittenResult& result, double ev);
 inline constexpr double kMiddleLight = 0.36;  ///< a surface that reflects half of it is middle grey, 0.18
 

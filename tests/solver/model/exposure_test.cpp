@@ -32,6 +32,12 @@ TEST(ExposureOf, ShowsTheMiddleOfTheRoomsAsTheSameGreyWhateverIsOutdoors) {
   EXPECT_NEAR(exposure_of(squares({kOutdoors, "a", "b"}, {20'000, 100, 400}), 2), 4 * expected, 4e-6 * expected);
 }
 
+TEST(ExposureOf, LeavesRoomsBelowWhiteWhereCorridorsAreDark) {
+  // The geometric mean of 10, 10, 1000 and 1000 lx is 100: as it wants it, half of the rooms were ten times white.
+  const double expected = 0.8 * kWhiteEfficacy / 1000;
+  EXPECT_NEAR(exposure_of(squares({"a", "b", "c", "d"}, {10, 1000, 10, 1000}), 0), expected, 1e-6 * expected);
+}
+
 TEST(ExposureOf, TakesTheOutdoorsWhereNoRoomIsLit) {
   const double expected = kMiddleLight * kWhiteEfficacy / 20'000;
   EXPECT_NEAR(exposure_of(squares({kOutdoors, "dark"}, {20'000, 0}), 0), expected, 1e-6 * expected);

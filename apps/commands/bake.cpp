@@ -158,6 +158,9 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
   RunReport report = new_report(arguments.input);
   report.counts.triangles = counts.triangles;
   report.counts.points = counts.points;
+  report.settings = {{"detail", arguments.detail.value_or("light")}, {"exposure", exposure}};
+  if (arguments.wants_atlas())
+    report.settings.push_back({"texels_per_metre", arguments.texels_per_metre.value_or(Arguments::kTexelsPerMetre)});
   finish_report(report, arguments.common, console, outputs);
   console.say(arguments.input + ": light on " + counted(counts.points, "point") + " of " +
               counted(counts.triangles, "triangle") + ", white at " + rounded(kWhiteEfficacy / exposure) + " lx");

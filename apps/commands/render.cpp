@@ -38,6 +38,11 @@ ExitCode render_command(const Arguments& arguments, Console& console) {
       render_view(result, arguments.input, arguments.view, arguments.as_exr(), console, console.monitor());
   RunReport report = new_report(arguments.input);
   report.counts.triangles = result.triangles.size();
+  report.settings = {{"show", arguments.view.show},
+                     {"width", static_cast<long long>(view.width)},
+                     {"height", static_cast<long long>(view.height)},
+                     {"samples", static_cast<long long>(arguments.view.samples)}};
+  report.log = view.notes;
   Outputs outputs;
   outputs.open(arguments.output).write(view.bytes);
   finish_report(report, arguments.common, console, outputs);

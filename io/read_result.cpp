@@ -220,6 +220,7 @@ WrittenResult read_result(const std::filesystem::path& file) {
   result.file = short_name(file);
   result.figures = tables.figures();
   result.texts = tables.texts();
+  if (!data->GetPointData()->HasArray("illuminance")) refuse(file, "has no array 'illuminance' on its points");
   const auto format = result.figures.find(arrays::kFormat);
   if (format == result.figures.end() || format->second != arrays::kFormatNumber)
     refuse(file, result.texts.contains("version")

@@ -24,7 +24,8 @@ namespace {
 constexpr std::size_t kReceiversInBlock = 64;
 constexpr std::size_t kBlocksInBatch = 64;  // between reports
 
-/// Others that a receiver sees, which tell what space it is in; kNone where there are fewer.
+/// Hits of a receiver on others, which tell what space it is in; kNone where there are fewer. Not more: what is seen
+/// through a slit by one ray of many is no neighbour.
 using Neighbours = std::array<std::uint32_t, 8>;
 
 /// What the links of all receivers are made from.
@@ -96,7 +97,7 @@ void write_views(const Workspace& work, Transport& transport) {
   }
 }
 
-/// Each once, and not itself: behind a mirror that hangs on a wall most of what a patch sees is its own image.
+/// Not on itself: behind a mirror that hangs on a wall most of what a patch sees is its own image.
 void note_neighbours(std::span<const Hit> hits, const ReceiverArea& area, Neighbours& neighbours) {
   std::size_t met = 0;
   const auto is_itself = [&](std::uint32_t q) {
@@ -104,10 +105,7 @@ void note_neighbours(std::span<const Hit> hits, const ReceiverArea& area, Neighb
   };
   for (const Hit& hit : hits) {
     if (met == neighbours.size()) return;
-    if (!hit.patch.valid()) continue;
-    const std::uint32_t q = hit.patch.value;
-    const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(met);
-    if (std::find(neighbours.begin(), end, q) == end && !is_itself(q)) neighbours[met++] = q;
+    if (hit.patch.valid() && !is_itself(hit.patch.value)) neighbours[met++] = hit.patch.value;
   }
 }
 

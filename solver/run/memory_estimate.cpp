@@ -21,8 +21,8 @@ namespace {
 //   a campus, draft     31,186     48,455   58,756     58,510  61,117   495,487      108.9      104.4
 //   office, 50 mm          128    489,475  498,422    484,914 248,939 13,154,651     549.3      660
 //   house, 100 mm          603    542,961  554,532    538,836 286,042 14,767,515     639.9      733
-// (Two threads, one or three channels. The program itself has grown by 4 MiB since.)
-constexpr double kProgram = 31 << 20;
+// (Two threads, one or three channels. The program itself has grown by 5 MiB since.)
+constexpr double kProgram = 32 << 20;
 constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 200, kPoint = 260, kLink = 10;  // [B]
 
 constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all that was measured

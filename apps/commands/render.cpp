@@ -91,6 +91,9 @@ void add_camera_options(CLI::App& command, ViewRequest& view, bool& fits) {
   CLI::Option* camera =
       command.add_option("--camera", view.camera, "a camera of the glTF model that was solved, by its name")
           ->type_name("NAME");
+  command.add_option("--scene", view.scene, "the scene or model that was solved, for --camera (default: where it was)")
+      ->type_name("FILE")
+      ->needs(camera);
   CLI::Option* fit = command.add_flag("--fit", fits, "from outside above a corner into the rooms; the default");
   CLI::Option* plan =
       add_words(command, "--plan", "Z", "a plan of what is below this height in metres, to scale, +y up",
@@ -145,7 +148,8 @@ void add_render_command(CLI::App& program, Task& task) {
       "example: clerestory render office.vtp -o plan.png --plan 1.2 --show illuminance --isolux 300,500,750");
   command.callback([arguments, &task] {
     task = [arguments] {
-      return run(arguments->common, arguments->input, {{"-o", arguments->output}},
+      return run(arguments->common, arguments->input,
+                 {{"--scene", arguments->view.scene, false}, {"-o", arguments->output}},
                  [&](Console& console) { return render_command(*arguments, console); });
     };
   });

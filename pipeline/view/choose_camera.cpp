@@ -17,9 +17,12 @@ namespace {
 
 constexpr double kUsualAngle = 60;  // [degrees]
 
-SceneCamera camera_named(const WrittenResult& result, const std::filesystem::path& file, const std::string& name) {
-  const std::filesystem::path input = file_of_scene(
-      result, file, "its cameras are there; bring it back, or say --eye and --target instead of --camera");
+SceneCamera camera_named(const WrittenResult& result, const std::filesystem::path& file, const ViewRequest& request) {
+  const std::string& name = request.camera;
+  const std::filesystem::path input =
+      request.scene.empty()
+          ? file_of_scene(result, file, "its cameras are there; say where it is, --scene FILE, or --eye and --target")
+          : std::filesystem::path(request.scene);
   const std::vector<SceneCamera> cameras = read_cameras(input);
   if (cameras.empty())
     throw InputError(text(short_name(input), ": has no camera, which only glTF files carry; say --eye and --target ",
@@ -81,7 +84,7 @@ Camera choose_camera(const WrittenResult& result, const std::filesystem::path& f
   camera.width = width, camera.height = height;
   camera.half_width = half_width_of_angle(request.fov.value_or(kUsualAngle), width, height);
   if (!request.camera.empty()) {
-    const SceneCamera from = camera_named(result, file, request.camera);
+    const SceneCamera from = camera_named(result, file, request);
     camera.eye = from.eye;
     camera.turn(from.forward, request.up.value_or(from.up));
     if (!request.fisheye && !request.fov && from.vertical_angle)

@@ -15,6 +15,7 @@ struct ViewRequest {
   std::optional<Vec3> eye, target;  ///< both or neither; scene's frame [m]
   std::optional<Vec3> up;           ///< default: +z
   std::string camera;               ///< name of one in the model; else empty
+  std::string scene;                ///< file that has the camera; empty: where the scene was when it was solved
   std::optional<Cut> cut;           ///< plan or section
   bool fisheye = false;             ///< by eye and target, or by the camera
   bool outdoors = false;            ///< a drawing shows what is outdoors, too

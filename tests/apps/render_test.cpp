@@ -169,7 +169,11 @@ TEST_F(Render, FindsTheCamerasOfAModelThatWasSolved) {
     EXPECT_EQ(run.err.find("nothing is seen"), run.err.npos) << run.err;
   }
   EXPECT_NE(look("above it").err.find("'Above'"), std::string::npos) << look("above it").err;
-  std::filesystem::remove(folder / "model.gltf");
+  const std::string moved = folder / "moved.gltf";
+  std::filesystem::rename(folder / "model.gltf", moved);
+  const ProgramRun found = run_program(
+      {"render", solved, "-o", folder / "view.png", "--size", "20x20", "--camera", "Above", "--scene", moved});
+  EXPECT_EQ(found.exit_code, 0) << found.err;
   const ProgramRun gone = look("Above");
   EXPECT_EQ(gone.exit_code, 3);
   EXPECT_NE(gone.err.find("not there any more"), gone.err.npos) << gone.err;

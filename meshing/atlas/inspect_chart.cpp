@@ -76,6 +76,7 @@ void note_overlaps(const std::vector<std::array<Texel, 3>>& texels, int columns,
     const auto [low, high] = std::minmax({t[0][1], t[1][1], t[2][1]});
     for (int y = std::max(0, static_cast<int>(low - 0.5)); y < rows && y + 0.5 < high; ++y) {
       const auto [left, right] = x_range(t, y + 0.5, y + 0.5);
+      if (!(left <= right)) continue;
       for (int x = std::max(0, static_cast<int>(left - 0.5)); x < columns && x + 0.5 < right - 1e-4; ++x) {
         if (x + 0.5 <= left + 1e-4) continue;
         std::uint32_t& first =

@@ -28,7 +28,7 @@ inline std::array<double, 2> x_range(const std::array<Texel, 3>& corner, double 
 /// Calls visit(row, first, last) for each row of cells that the triangle touches. There are columns x rows cells.
 template <class Visit>
 void for_rows_of_cells(const std::array<Texel, 3>& corner, int columns, int rows, const Visit& visit) {
-  const auto cell = [](double x, int count) { return std::clamp(static_cast<int>(std::floor(x)), 0, count - 1); };
+  const auto cell = [](double x, int count) { return static_cast<int>(std::clamp(std::floor(x), 0.0, count - 1.0)); };
   const auto [low, high] = std::minmax({corner[0][1], corner[1][1], corner[2][1]});
   const int last = cell(high + kNearTexel, rows);
   for (int row = cell(low - kNearTexel, rows); row <= last; ++row) {

@@ -64,16 +64,18 @@ class System {
     sweep();
   }
 
-  /// From B: what arrives, the residual that an ambient irradiance leaves over, and B of the next sweep.
+  /// From B: what arrives, its residual, the ambient irradiance that makes that vanish, and B of the next sweep.
   void sweep() {
     gather_(B_, arrives_of_B());
-    find_ambient();
-    take_step();
-    // Without it every sweep helps, as no row sums to more than 1.
+    find_residual();
+    // Without ambient irradiance every sweep helps, as no row reflects more than arrives.
     if (residual() > kGrows * least_) uses_ambient_ = false;
     least_ = std::min(least_, residual());
+    find_ambient();
+    take_step();
   }
 
+  /// Of B as it was gathered, before its step: what spaces send each other is in it.
   double residual() const {
     double worst = 0;
     for (std::size_t l = 0; l < L; ++l)
@@ -130,16 +132,18 @@ class System {
 
   std::vector<Lanes<L>>& arrives_of_B() { return kBySteps ? source_ : FB_; }
 
-  /// The residual, and the ambient irradiance that makes it vanish in each space.
-  void find_ambient() {
+  /// And its sum in each space.
+  void find_residual() {
     const std::vector<Lanes<L>>& arrives = arrives_of_B();
     e_.assign(transport_.spaces, {});
+    left_ = {};
     for (std::size_t i = 0; i < n_; ++i) {
       const Lanes<L> leaves = scattered(arrives, i), B = B_[i];
       const double area = p_.area[i];
       Lanes<L> r = kBySteps ? r_[i] : source_[i], e = e_[transport_.space[i]];
       for (std::size_t l = 0; l < L; ++l) r.lane[l] = r.lane[l] + leaves.lane[l] - B.lane[l];
       for (std::size_t l = 0; l < L; ++l) e.lane[l] += area * r.lane[l];
+      for (std::size_t l = 0; l < L; ++l) left_.lane[l] += area * std::abs(r.lane[l]);
       r_[i] = r;
       e_[transport_.space[i]] = e;
       if constexpr (kBySteps) {
@@ -149,6 +153,10 @@ class System {
         FB_[i] = FB;
       }
     }
+  }
+
+  /// What makes the residual vanish in the mean of each space.
+  void find_ambient() {
     for (std::size_t s = 0; s < e_.size(); ++s)
       for (std::size_t l = 0; l < L; ++l) {
         const double loss = ambient_loss_[s].c[channel_[l]];
@@ -157,17 +165,13 @@ class System {
   }
 
   void take_step() {
-    Lanes<L> left;
     for (std::size_t i = 0; i < n_; ++i) {
       const Lanes<L> albedo = by_channel(albedo_, i), lost = by_channel(lost_, i), e = e_[transport_.space[i]];
-      const double area = p_.area[i];
       Lanes<L> r = r_[i], B = kBySteps ? Lanes<L>{} : B_[i];
       for (std::size_t l = 0; l < L; ++l) r.lane[l] -= e.lane[l] * lost.lane[l];
-      for (std::size_t l = 0; l < L; ++l) left.lane[l] += area * std::abs(r.lane[l]);
       for (std::size_t l = 0; l < L; ++l) B.lane[l] = B.lane[l] + e.lane[l] * albedo.lane[l] + r.lane[l];
       B_[i] = B;
     }
-    left_ = left;
   }
 
   static constexpr bool kBySteps = L == 8;

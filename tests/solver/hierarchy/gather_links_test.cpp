@@ -50,16 +50,19 @@ TEST(LinkGather, FindsInEightLanesWhatOneLaneFinds) {
 }
 
 TEST(BalanceOf, SpacesThatLightEachOtherAreBalancedAllTheSame) {
-  // A few patches a space, though they see hardly anything but patches of others: corrected one by one, all overshoot.
+  // Few patches a space, or one, though they see hardly anything but patches of others: corrected one by one, all
+  // overshoot, and nothing of that is seen in their own space.
   LinkedRoom r(1);
   const Field M = r.light(1), E_direct(r.n, 1);
   const Balanced right = balance(r.room.patches, r.tree, r.transport, M, E_direct, {}, 1e-9);
   ASSERT_EQ(right.stop, StopReason::converged);
-  r.transport.spaces = r.n / 4;
-  for (std::uint32_t i = 0; i < r.n; ++i) r.transport.space[i] = i % static_cast<std::uint32_t>(r.transport.spaces);
-  const Balanced parted = balance(r.room.patches, r.tree, r.transport, M, E_direct, {}, 1e-9);
-  ASSERT_EQ(parted.stop, StopReason::converged);
-  for (std::size_t i = 0; i < r.n; ++i) EXPECT_NEAR(parted.E[i][0], right.E[i][0], 1e-6 * right.E[i][0]);
+  for (const std::size_t patches : {4, 1}) {
+    r.transport.spaces = r.n / patches;
+    for (std::uint32_t i = 0; i < r.n; ++i) r.transport.space[i] = i % static_cast<std::uint32_t>(r.transport.spaces);
+    const Balanced parted = balance(r.room.patches, r.tree, r.transport, M, E_direct, {}, 1e-9);
+    ASSERT_EQ(parted.stop, StopReason::converged);
+    for (std::size_t i = 0; i < r.n; ++i) EXPECT_NEAR(parted.E[i][0], right.E[i][0], 1e-6 * right.E[i][0]);
+  }
 }
 
 class Balance : public testing::TestWithParam<std::pair<int, int>> {};

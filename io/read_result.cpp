@@ -1,5 +1,6 @@
 #include "io/read_result.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -202,6 +203,79 @@ struct QuietVtk {
   int before = vtkObject::GetGlobalWarningDisplay();
 };
 
+/// Takes the lines of that name out of the texts; none where there are none.
+std::vector<std::string> take(std::map<std::string, std::vector<std::string>>& texts, const char* name) {
+  const auto lines = texts.extract(name);
+  return lines ? lines.mapped() : std::vector<std::string>();
+}
+
+void require_own_format(vtkPolyData* data, const WrittenResult& result, const std::filesystem::path& file) {
+  if (!data->GetPointData()->HasArray("illuminance")) refuse(file, "has no array 'illuminance' on its points");
+  const auto format = result.figures.find(arrays::kFormat);
+  if (format != result.figures.end() && format->second == arrays::kFormatNumber) return;
+  const auto version = result.texts.find("version");
+  if (version == result.texts.end()) refuse(file, "was not written by clerestory solve");
+  refuse(file, text("was written by Clerestory ", version->second.front(),
+                    format == result.figures.end() ? ", before results held what is needed"
+                                                   : ", which writes results otherwise than this one"));
+}
+
+std::vector<Vec3> points_of(vtkPolyData* data, const std::filesystem::path& file) {
+  std::vector<Vec3> points(static_cast<std::size_t>(data->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double p[3];
+    data->GetPoint(static_cast<vtkIdType>(i), p);
+    points[i] = {p[0], p[1], p[2]};
+    for (const double x : p)
+      if (!(std::abs(x) <= kFarthest))
+        refuse(file, text("point ", i, " has the coordinate ", x, ", and all are within ", kFarthest, " m"));
+  }
+  return points;
+}
+
+std::vector<std::array<std::uint32_t, 3>> triangles_of(vtkPolyData* data, const std::filesystem::path& file) {
+  vtkCellArray* cells = data->GetPolys();
+  if (data->GetNumberOfCells() != cells->GetNumberOfCells()) refuse(file, "has other cells than triangles");
+  std::vector<std::array<std::uint32_t, 3>> triangles(static_cast<std::size_t>(cells->GetNumberOfCells()));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    vtkIdType count = 0;
+    const vtkIdType* corners = nullptr;
+    cells->GetCellAtId(static_cast<vtkIdType>(i), count, corners);
+    if (count != 3) refuse(file, text("cell ", i, " has ", count, " corners and is no triangle"));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (corners[k] < 0 || corners[k] >= data->GetNumberOfPoints())
+        refuse(file, text("cell ", i, " has a corner of number ", corners[k], ", and there are ",
+                          data->GetNumberOfPoints(), " points"));
+      triangles[i][k] = static_cast<std::uint32_t>(corners[k]);
+    }
+  }
+  return triangles;
+}
+
+void require_rows(const std::map<std::string, WrittenArray>& arrays, std::size_t n, const char* of_what,
+                  const std::filesystem::path& file) {
+  for (const auto& [name, array] : arrays)
+    if (array.value.size() != static_cast<std::size_t>(array.components) * n)
+      refuse(file, text("its array '", quotable(name), "' has another number of rows than there are ", of_what));
+}
+
+/// What every result has on its points, and that all of it is numbers.
+void require_light(const std::map<std::string, WrittenArray>& of_points, const std::filesystem::path& file) {
+  const auto components = [&](const char* name) {
+    const auto at = of_points.find(name);
+    if (at == of_points.end()) refuse(file, text("has no array '", name, "' on its points"));
+    return at->second.components;
+  };
+  for (const char* name : {"illuminance", "luminance"})
+    if (const int n = components(name); n != 1) refuse(file, text("its array '", name, "' has ", n, " components"));
+  if (const int n = components("irradiance"); (n != 1 && n != 3) || components("radiosity") != n)
+    refuse(file, text("its arrays 'irradiance' and 'radiosity' have ", n, " and ", components("radiosity"),
+                      " components, and should have 1 or 3 alike"));
+  for (const auto& [name, array] : of_points)
+    if (!std::ranges::all_of(array.value, [](float value) { return std::isfinite(value); }))
+      refuse(file, text("its array '", quotable(name), "' has a value that is no number"));
+}
+
 }  // namespace
 
 WrittenResult read_result(const std::filesystem::path& file) {
@@ -220,65 +294,18 @@ WrittenResult read_result(const std::filesystem::path& file) {
   result.file = short_name(file);
   result.figures = tables.figures();
   result.texts = tables.texts();
-  if (!data->GetPointData()->HasArray("illuminance")) refuse(file, "has no array 'illuminance' on its points");
-  const auto format = result.figures.find(arrays::kFormat);
-  if (format == result.figures.end() || format->second != arrays::kFormatNumber)
-    refuse(file, result.texts.contains("version")
-                     ? text("was written by Clerestory ", result.texts["version"].front(),
-                            format == result.figures.end() ? ", before results held what is needed"
-                                                           : ", which writes results otherwise than this one")
-                     : text("was not written by clerestory solve"));
-
-  result.points.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
-  for (std::size_t i = 0; i < result.points.size(); ++i) {
-    double p[3];
-    data->GetPoint(static_cast<vtkIdType>(i), p);
-    result.points[i] = {p[0], p[1], p[2]};
-    for (const double x : p)
-      if (!(std::abs(x) <= kFarthest))
-        refuse(file, text("point ", i, " has the coordinate ", x, ", and all are within ", kFarthest, " m"));
-  }
-  vtkCellArray* cells = data->GetPolys();
-  if (data->GetNumberOfCells() != cells->GetNumberOfCells()) refuse(file, "has other cells than triangles");
-  result.triangles.reserve(static_cast<std::size_t>(cells->GetNumberOfCells()));
-  for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i) {
-    vtkIdType count = 0;
-    const vtkIdType* corners = nullptr;
-    cells->GetCellAtId(i, count, corners);
-    if (count != 3) refuse(file, text("cell ", i, " has ", count, " corners and is no triangle"));
-    std::array<std::uint32_t, 3> triangle{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (corners[k] < 0 || corners[k] >= data->GetNumberOfPoints())
-        refuse(file, text("cell ", i, " has a corner of number ", corners[k], ", and there are ",
-                          data->GetNumberOfPoints(), " points"));
-      triangle[k] = static_cast<std::uint32_t>(corners[k]);
-    }
-    result.triangles.push_back(triangle);
-  }
+  require_own_format(data, result, file);
+  result.points = points_of(data, file);
+  result.triangles = triangles_of(data, file);
   result.of_points = arrays_of(data->GetPointData());
   result.of_cells = arrays_of(data->GetCellData());
-  for (const char* name : {"irradiance", "illuminance", "radiosity", "luminance"}) {
-    const auto at = result.of_points.find(name);
-    const bool coloured = name == std::string_view("irradiance") || name == std::string_view("radiosity");
-    if (at == result.of_points.end()) refuse(file, text("has no array '", name, "' on its points"));
-    if (const int n = at->second.components; n != 1 && !(coloured && n == 3))
-      refuse(file, text("its array '", name, "' has ", n, " components"));
-  }
-  if (result.of_points["irradiance"].components != result.of_points["radiosity"].components)
-    refuse(file, "its arrays 'irradiance' and 'radiosity' are not of as many components");
-  for (const auto& [name, array] : result.of_points)
-    if (array.value.size() != static_cast<std::size_t>(array.components) * result.points.size())
-      refuse(file, text("its array '", quotable(name), "' has another number of rows than there are points"));
-  for (const auto& [name, array] : result.of_cells)
-    if (array.value.size() != static_cast<std::size_t>(array.components) * result.triangles.size())
-      refuse(file, text("its array '", quotable(name), "' has another number of rows than there are cells"));
-  for (const auto& [name, array] : result.of_points)
-    for (const float value : array.value)
-      if (!std::isfinite(value)) refuse(file, text("its array '", name, "' has a value that is no number"));
+  require_rows(result.of_points, result.points.size(), "points", file);
+  require_rows(result.of_cells, result.triangles.size(), "cells", file);
+  require_light(result.of_points, file);
 
   result.materials = materials_of(tables, result, file);
-  result.surfaces = result.texts[arrays::kSurfaceNames];
-  result.rooms = result.texts[arrays::kRoomNames];
+  result.surfaces = take(result.texts, arrays::kSurfaceNames);
+  result.rooms = take(result.texts, arrays::kRoomNames);
   const auto of_cells = [&](const char* name, std::size_t limit) {
     const auto at = result.of_cells.find(name);
     if (at == result.of_cells.end()) refuse(file, text("has no array '", name, "' on its cells"));
@@ -288,7 +315,7 @@ WrittenResult read_result(const std::filesystem::path& file) {
   result.surface = of_cells("surface", result.surfaces.size());
   if (result.of_cells.contains("room")) result.room = of_cells("room", result.rooms.size());
   result.around = around_of(tables, result, file);
-  if (const auto& report = result.texts[arrays::kReport]; !report.empty()) result.report = report.front();
+  for (const std::string& report : take(result.texts, arrays::kReport)) result.report = report;
   return result;
 }
 

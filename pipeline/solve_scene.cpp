@@ -116,7 +116,8 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
           return out;
         }
         Solution& solution = solved.solution;
-        out.panes = panes_of(patches);                                                // elements have none
+        out.panes = panes_of(patches);  // before elements take their place, which have none
+
         if (solved.elements.patch_count() > 0) patches = std::move(solved.elements);  // the problem is about these now
         monitor.report(sensors.planes.empty() ? "error" : "sensors", 0);  // ends the last stage of the solve
         lap.add_to(seconds.gather);

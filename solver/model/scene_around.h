@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "solver/model/channels.h"
-#include "solver/model/ids.h"
 #include "solver/model/sensors.h"
 #include "solver/model/vec.h"
 

@@ -5,6 +5,7 @@
 #include "apps/commands/commands.h"
 #include "apps/finish_report.h"
 #include "apps/run.h"
+#include "apps/solution_warnings.h"
 #include "io/bake/atlas_files.h"
 #include "io/bake/baked_files.h"
 #include "io/picture/encode.h"
@@ -155,6 +156,7 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
     counts = write_model_detail(outputs.open(arguments.output), result, arguments, console, exposure);
   else
     counts = write_light_detail(outputs.open(arguments.output), result, exposure);
+  repeat_warnings(result, console);
   RunReport report = new_report(arguments.input);
   report.counts.triangles = counts.triangles;
   report.counts.points = counts.points;

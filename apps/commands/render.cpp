@@ -5,6 +5,7 @@
 #include "apps/commands/commands.h"
 #include "apps/finish_report.h"
 #include "apps/run.h"
+#include "apps/solution_warnings.h"
 #include "apps/view_words.h"
 #include "io/atomic_file.h"
 #include "io/picture/encode.h"
@@ -36,6 +37,7 @@ ExitCode render_command(const Arguments& arguments, Console& console) {
   console.has_read(files_of_scene(result, arguments.input));
   const RenderedView view =
       render_view(result, arguments.input, arguments.view, arguments.as_exr(), console, console.monitor());
+  repeat_warnings(result, console);
   RunReport report = new_report(arguments.input);
   report.counts.triangles = result.triangles.size();
   report.settings = {{"show", arguments.view.show},

@@ -41,6 +41,19 @@ TEST_F(Bake, WritesOverNoFileOfTheSceneThatWasSolved) {
   EXPECT_EQ(read_text(scene_), scene);
 }
 
+TEST_F(Bake, SaysAgainWhatTheSolveWarnedOf) {
+  const std::string doubtful =
+      SolvedBox{.box = box_, .warnings = {"a", "b", "c", "2 % of the light is missing"}}.write(folder_);
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"bake", doubtful, "-o", folder_ / "a.ply"},
+                                                  {"render", doubtful, "-o", folder_ / "a.png", "--size", "32x18"}}) {
+    const ProgramRun run = run_program(command);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.err.find("warning: when it was solved: 2 % of the light is missing"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("1 more warning;"), std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find("solved: a\n"), std::string::npos) << run.err;
+  }
+}
+
 TEST_F(Bake, ALitRoomHasTheLightOfTheSolutionInEveryFormatAndDetail) {
   // Every surface receives B = M / (1 - rho), up to what a draft errs.
   const ProgramRun solve = run_program({"solve", scene_, "-o", result_, "--accuracy", "draft", "--no-error"});

@@ -66,7 +66,9 @@ std::string SolvedBox::write(const TempFolder& folder) const {
   }
   SceneAround all = around;
   all.files = {scene, folder / "room.obj"};
-  write_result(file, patches, lightmap, solution, all, new_report(scene));
+  RunReport report = new_report(scene);
+  report.warnings = warnings;
+  write_result(file, patches, lightmap, solution, all, report);
   return file;
 }
 

@@ -17,6 +17,7 @@ struct SolvedBox {
   std::function<double(const Vec3&)> E{};
   SceneAround around{};
   std::vector<Material> more_materials{};  ///< from 1 on, of panes
+  std::vector<std::string> warnings{};     ///< of its solve
   std::size_t squares = 4;                 ///< a side of each wall, of two triangles each
 
   /// Writes room.obj, room.json and room.vtp; returns the path of the last.

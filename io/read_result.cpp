@@ -164,7 +164,7 @@ std::vector<MeasuredSensors> sensors_of(const Tables& tables, const WrittenResul
   const auto position = tables.positions(arrays::kSensorPositions, set.size()),
              normal = tables.positions(arrays::kSensorNormals, set.size());
   const auto lux = tables.numbers(arrays::kSensorIlluminance, 1, set.size());
-  const int lanes = tables.has(arrays::kSensorLayers) ? static_cast<int>(layers) * result.channels() : 0;
+  const int lanes = static_cast<int>(layers) * result.channels();
   const auto of_layers = lanes > 0 ? tables.numbers(arrays::kSensorLayers, lanes, set.size()) : std::vector<double>();
   for (std::size_t i = 0; i < set.size(); ++i) {
     MeasuredSensors& to = sensors[set[i]];

@@ -24,7 +24,7 @@ struct Material {
   Spectrum exitance{0.0};               ///< M of each side [W/m2]
   std::optional<Spectrum> total_power;  ///< [W] shared over the sides that carry the material; replaces exitance
   int sides = 2;                        ///< 1: the back (wound clockwise) is black and does not emit
-  std::string group;                    ///< of what glows: switched and dimmed together; may be empty
+  std::string group{};                  ///< of what glows: switched and dimmed together; may be empty
 
   friend bool operator==(const Material&, const Material&) = default;
 

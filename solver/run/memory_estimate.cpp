@@ -25,7 +25,7 @@ namespace {
 //
 // With layers, whose arrays live side by side only while elements are shown; without, and predicted, in brackets:
 //
-//   classroom, ten layers, standard                      36,626  21,272 1,348,475       63.7 (56.4)    79 (62)
+//   classroom, ten layers, standard                      36,626  21,272 1,348,475       63.7 (56.4)    80 (62)
 //   the same, fine                                      111,228  60,820 2,252,804      109.9 (80.0)   151 (96)
 //   house, three layers, standard                        75,508  45,061   697,973       81.5 (74.2)    89 (70)
 constexpr double kProgram = 32 << 20;

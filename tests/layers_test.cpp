@@ -65,6 +65,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"hierarchy"},
     {"methods"},
     {"evaluate"},
+    {"dimming"},
     {"run"},
 };
 
@@ -104,6 +105,7 @@ const std::vector<Library>& libraries() {
       {"VTK", std::regex("vtk.*"), {"io/"}, true},  // what our .vtp files share, inside io/ only
       {"Assimp", std::regex("assimp/.*"), {"io/"}},
       {"OpenImageIO", std::regex("OpenImageIO/.*"), {"io/"}},
+      {"Clp", std::regex("coin/.*"), {"solver/dimming/linear_programme.cpp"}},
       {"JSON", std::regex("nlohmann/.*"), {"io/", "apps/"}, true},
       {"TBB", std::regex("(tbb|oneapi)/.*"), {"solver/model/parallel.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"apps/"}},

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/commands/commands.h"
+#include "apps/dim_arguments.h"
 #include "apps/finish_report.h"
 #include "apps/layer_arguments.h"
 #include "apps/run.h"
@@ -26,6 +27,7 @@ struct Arguments {
   CommonArguments common;
   std::string input, output, sensors_output;
   std::vector<std::string> set;
+  DimArguments dim;
 };
 
 void write_mixed_sensors(AtomicFile& file, const WrittenResult& mixed) {
@@ -50,6 +52,18 @@ void say_mix(const RunReport& report, const RunReport& before, Console& console)
     for (const std::string& line : sensor_table(report.sensors)) console.say("  " + line);
 }
 
+/// "dimmed  windows=0.2 middle=0.6: 8,960 lm of 26,880 lm, 66.7 % saved"
+void say_found(const FoundFactors& found, Console& console) {
+  std::string line = "  dimmed ";
+  for (const LayerFactor& f : found.factors) line += " " + f.layer + "=" + rounded(f.factor, 4);
+  line += ": " + rounded(found.luminous_flux, 4) + " lm of " + rounded(found.full_flux, 4) + " lm";
+  if (found.luminous_flux == 0)
+    line += "; there is enough light without";
+  else if (found.luminous_flux <= found.full_flux)
+    line += ", " + percent(1 - found.luminous_flux / found.full_flux) + " saved";
+  console.say(line);
+}
+
 ExitCode mix_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   if (!arguments.sensors_output.empty()) check_writable(arguments.sensors_output);
@@ -61,7 +75,13 @@ ExitCode mix_command(const Arguments& arguments, Console& console) {
   if (!arguments.sensors_output.empty() && result.around.sensors.empty())
     throw InputError("--sensors-out " + arguments.sensors_output + ": " + arguments.input + " has no sensors.");
 
-  const std::vector<double> factors = factors_of(result, layer_factors(arguments.set));
+  std::vector<LayerFactor> set = layer_factors(arguments.set);
+  std::optional<FoundFactors> found;
+  if (const auto request = dim_request(arguments.dim)) {
+    found = find_factors(result, set, *request);
+    set.insert(set.end(), found->factors.begin(), found->factors.end());
+  }
+  const std::vector<double> factors = factors_of(result, set);
   mix_layers(result, factors);
   const RunReport before = run_report_of(result.report, result.file);
   RunReport report = report_of_mix(before, result, factors);
@@ -75,6 +95,7 @@ ExitCode mix_command(const Arguments& arguments, Console& console) {
   writing.add_to(report.seconds.write);
   finish_report(report, arguments.common, console, outputs);
   console.say(arguments.input + ": " + counted(factors.size(), "layer") + " of " + report.input);
+  if (found) say_found(*found, console);
   say_mix(report, before, console);
   console.commit(outputs);
   console.say("  results " + arguments.output +
@@ -96,12 +117,17 @@ void add_mix_command(CLI::App& program, Task& task) {
       ->type_name("OUT.vtp")
       ->required();
   require_extension(command, "--output", {".vtp"});
-  add_set_option(command, arguments->set)->required();
+  add_set_option(command, arguments->set);
+  add_dim_options(command, arguments->dim);
   command.add_option("--sensors-out", arguments->sensors_output, "what sensors receive of it (default: not written)")
       ->type_name("OUT.csv");
   add_common_options(command, arguments->common);
-  command.footer("example: clerestory mix classroom.vtp -o dimmed.vtp --set windows=0.2 --set middle=0.6");
+  command.footer(
+      "example: clerestory mix classroom.vtp -o dimmed.vtp --set windows=0.2 --set middle=0.6\n         clerestory mix "
+      "classroom.vtp -o dimmed.vtp --target 'work plane=300' --uniformity 0.6");
   command.callback([arguments, &task] {
+    if (arguments->set.empty() && arguments->dim.targets.empty())
+      throw CLI::ValidationError("mix", "needs --set LAYER=FACTOR or --target GRID=LUX");
     task = [arguments] {
       return run(arguments->common, arguments->input,
                  {{"-o", arguments->output}, {"--sensors-out", arguments->sensors_output}},

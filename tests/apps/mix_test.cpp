@@ -1,6 +1,7 @@
 // clerestory solve --layers and clerestory mix, from the outside.
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -118,6 +119,32 @@ TEST_F(Mix, IsTheSolveAtThoseLevels) {
   EXPECT_NEAR(brightest, 2500 / std::numbers::pi, 1e-3 * brightest);
 }
 
+TEST_F(Mix, DimsToATargetThatTheClosedFormAndAFreshSolveConfirm) {
+  ASSERT_EQ(solve(scene(), "layered", {"--layers"}).exit_code, 0);
+  const ProgramRun run = mix("layered", "dimmed",
+                             {"--set", "right=1", "--set", "panel=0", "--target", "desk=120", "--sensors-out",
+                              folder_ / "dimmed.sensors.csv", "--report", folder_ / "dimmed.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  // Both lamps lie alike to the desk, so each gives it the same mean m of E = I cos(theta) / r^2: level = (120 - m) /
+  // m.
+  double m = 0;
+  const auto rows = sensors("layered");
+  for (const auto& row : rows) {
+    const double x = value(row, "x") + 2, y = value(row, "y"), r2 = x * x + y * y + 4;
+    m += 10'000 / (4 * std::numbers::pi) * 2 / std::pow(r2, 1.5) / static_cast<double>(rows.size());
+  }
+  const Json report = Json::parse(read_text(folder_ / "dimmed.json"));
+  const double level = report["layers"][0]["factor"];
+  const double exact = (120 - m) / m;
+  EXPECT_NEAR(level, exact, 1e-5) << run.out;
+  EXPECT_NE(run.out.find("dimmed  left="), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("saved"), std::string::npos) << run.out;
+  ASSERT_EQ(solve(scene(R"("left", "right", "panel")", level, 0), "fresh", {"--seed", "2"}).exit_code, 0);
+  double mean = 0;
+  for (const auto& row : sensors("fresh")) mean += value(row, "illuminance") / static_cast<double>(rows.size());
+  EXPECT_NEAR(mean, 120, 1e-3);  // lux; the plane is black, so neither solve has noise
+}
+
 TEST_F(Mix, WhatItWritesIsAResultForEveryCommand) {
   ASSERT_EQ(solve(scene(), "layered", {"--layers"}).exit_code, 0);
   ASSERT_EQ(mix("layered", "mixed", {"--set", "right=0"}).exit_code, 0);
@@ -148,6 +175,19 @@ TEST_F(Mix, WhatCannotBeIsRefusedWithOneMessage) {
   for (const char* bad : {"left=-1", "left=nan", "left", "=1", "left=1001"})
     expect(mix("layered", "out", {"--set", bad}), 2, "write LAYER=FACTOR");
   expect(mix("layered", "out", {}), 2, "--set");
+
+  expect(mix("layered", "out", {"--target", "desck=100"}), 3, "did you mean 'desk'?");
+  expect(mix("layered", "out", {"--target", "desk=1e5"}), 3, "left, right, panel all at 1 give a mean of");
+  expect(mix("layered", "out", {"--target", "desk=10", "--uniformity", "1"}), 3,
+         "the best that left, right, panel can");
+  expect(mix("layered", "out", {"--target", "desk=10", "--set", "lift=1"}), 3, "did you mean 'left'?");
+  expect(mix("plain", "out", {"--target", "desk=10"}), 3, "solve the scene again with --layers");
+  for (const char* bad : {"desk=0", "desk=nan", "desk", "=5", "desk=5:max"})
+    expect(mix("layered", "out", {"--target", bad}), 2, "GRID=LUX");
+  expect(mix("layered", "out", {"--target", "desk=10", "--uniformity", "1.5"}), 2, "outside (0, 1]");
+  expect(mix("layered", "out", {"--target", "desk=10", "--max", "0"}), 2, "outside (0, 1000]");
+  expect(mix("layered", "out", {"--commission", "--set", "left=1"}), 2, "--target");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.vtp")) << "what is refused writes nothing";
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "io/scene_file/room_entries.h"
 #include "io/scene_file/sensor_entries.h"
 #include "io/scene_file/sky_entries.h"
+#include "io/scene_file/sky_of_times.h"
 #include "io/text.h"
 #include "io/unit_vector.h"
 #include "solver/model/error.h"
@@ -126,7 +127,7 @@ void compare_north(const JsonObject& root, const std::string& file_name, Scene& 
 
 }  // namespace
 
-Scene read_scene_file(const std::filesystem::path& file) {
+Scene read_scene_file(const std::filesystem::path& file, std::span<const Moment> times) {
   const std::string name = short_name(file);
   const Json json = parse_json<Json>(read_input_file(file, kMaxSceneFileBytes), name);
   const JsonObject root = root_of_scene(json, name);
@@ -143,7 +144,10 @@ Scene read_scene_file(const std::filesystem::path& file) {
   PhotometryFiles photometry;
   read_luminaire_entries(root, name, folder, photometry, channels, scene);
   std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, photometry, channels, scene);
-  scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
+  if (times.empty())
+    scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
+  else
+    read_sky_of_times(root, name, folder, times, channels, scene);
   if (root.has("solver")) {
     scene.settings = read_settings(JsonObject(root.at("solver"), name + ": solver",
                                               {"method", "accuracy", "oracle", "max_element", "detail", "target_error",

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/formats/epw.h"
 #include "io/formats/read_sky_image.h"
 #include "io/input_file.h"
 #include "io/scene_file/nearest_name.h"
@@ -71,9 +70,10 @@ struct HourOfDaylight {
   std::optional<Daylight::Hour> weather;                            ///< which hour of which file
 };
 
-SkyEntries read_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels) {
+SkyEntries read_entries(const JsonObject& root, const std::string& file_name, const TimeOfSeries* series,
+                        ChannelCount& channels) {
   SkyEntries read;
-  read.where_and_when = read_place_and_time(root, file_name);
+  read.where_and_when = read_place_and_time(root, file_name, series ? std::optional(series->moment) : std::nullopt);
   if (root.has("sky")) {
     read.sky.emplace(root.at("sky"), file_name + ": sky",
                      std::initializer_list<std::string_view>{"model", "horizontal_illuminance", "type",
@@ -174,7 +174,7 @@ void warn_of_place(const std::string& who, const Place& place, std::vector<std::
 
 /// Finds the hour of the weather file; place and time of the scene become those of the file where it says none.
 HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, const std::filesystem::path& folder,
-                               PlaceAndTime& at, std::vector<std::string>& warnings) {
+                               TimeOfSeries* series, PlaceAndTime& at, std::vector<std::string>& warnings) {
   const std::string named = *sky.word("weather");
   require_file(folder / named, sky.place("weather"), named);
   const bool by_day = sky.has("day_of_year") || sky.has("hour");
@@ -186,8 +186,13 @@ HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, co
     throw InputError(text(root.place("time"), " is missing; which hour of the weather file? Write \"time\": ",
                           "\"2026-03-21T12:00\", or day_of_year and hour into the sky"));
   }
-  const Weather weather = read_epw(folder / named);
-  warnings.insert(warnings.end(), weather.warnings.begin(), weather.warnings.end());
+  std::optional<Weather> of_one_time;
+  std::optional<Weather>& kept = series ? series->weather : of_one_time;
+  if (!kept) {
+    kept = read_epw(folder / named);
+    warnings.insert(warnings.end(), kept->warnings.begin(), kept->warnings.end());
+  }
+  const Weather& weather = *kept;
   if (!at.place) {
     at.place = weather.place;
     warn_of_place(weather.file, *at.place, warnings);
@@ -365,8 +370,9 @@ void set_general_type(int type, Sky& sky) {
 
 /// A sun that has set gives no light: the ground is in its way.
 void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& direction, bool computed,
-             const std::string& file_name, LightSpec& lights, std::vector<std::string>& warnings) {
+             bool of_series, const std::string& file_name, LightSpec& lights, std::vector<std::string>& warnings) {
   if (direction.z <= 0 && computed) {
+    if (of_series) return;
     const Place& place = *entries.where_and_when.place;
     warnings.push_back(text(file_name, ": at this place and time the sun stands ",
                             -std::asin(direction.z) * 180 / std::numbers::pi,
@@ -385,8 +391,8 @@ void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& 
 
 std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::string& file_name,
                                          const std::filesystem::path& folder, ChannelCount& channels, LightSpec& lights,
-                                         std::vector<std::string>& warnings) {
-  SkyEntries entries = read_entries(root, file_name, channels);
+                                         std::vector<std::string>& warnings, TimeOfSeries* series) {
+  SkyEntries entries = read_entries(root, file_name, series, channels);
   PlaceAndTime& at = entries.where_and_when;
   if (at.place) warn_of_place(root.place("location"), *at.place, warnings);
   const std::optional<JsonObject>& object = entries.sky;
@@ -399,7 +405,7 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
     constexpr Range kGround{.low = 0, .high = 1, .advice = "the ground cannot reflect more than it receives"};
     sky.ground_reflectance = object->number("ground_reflectance", kGround).value_or(sky.ground_reflectance);
     if (object->has("weather"))
-      hour = hour_of_weather(root, *object, folder, at, warnings);
+      hour = hour_of_weather(root, *object, folder, series, at, warnings);
     else if (sky.model == SkyModel::perez)
       hour = hour_of_keys(*object);
   }
@@ -424,7 +430,11 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
     if (sky.model == SkyModel::perez) sky.shape = perez_shape(measured);
   }
   if (object && sky.model == SkyModel::image) {
-    set_image(*object, folder, at.north_deg, sky, channels, warnings);
+    if (series && series->image)
+      sky = *series->image;
+    else
+      set_image(*object, folder, at.north_deg, sky, channels, warnings);
+    if (series) series->image = sky;
   } else if (object && !hour) {
     set_illuminance(*object, sky, channels, warnings);
   }
@@ -449,7 +459,7 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
                             "0 only shows the sky where the sun stands"));
     }
     add_sun(entries, entries.sun_irradiance.value_or(Spectrum(hour ? *hour->direct_normal_lux / kWhiteEfficacy : 0)),
-            *to_sun, computed, file_name, lights, warnings);
+            *to_sun, computed, series != nullptr, file_name, lights, warnings);
     sun_used = true;
   }
   if ((at.time || root.has("location")) && !hour && !(sun_used && computed) && !(sky.image && at.north_deg != 0)) {

@@ -61,6 +61,12 @@ struct Daylight {
   std::optional<Hour> weather;  ///< that sun and sky have their light from
 };
 
+/// One of several times that a scene is lit for.
+struct SceneTime {
+  Moment moment;
+  Daylight daylight;  ///< as of Scene::daylight
+};
+
 /// Things of one kind in a model that its reader did not use or understand.
 struct NotRead {
   std::string what;
@@ -84,6 +90,7 @@ struct Scene {
   std::vector<std::string> surfaces;  ///< names, by SurfaceId
   LightSpec lights;
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
+  std::vector<SceneTime> times;      ///< that `lights` are the mean of; empty: as they are
   std::vector<SensorSet> sensors;
   std::vector<NamedSpace> spaces;    ///< rooms that the models name
   std::vector<NamedSurfaces> rooms;  ///< that the scene file names

@@ -282,9 +282,9 @@ SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, 
 }  // namespace
 
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around) {
+                    const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around, KeptTransport* keep) {
   UsedTransport used;
-  KeptTransport* const keep_links = options.check_laws ? &used.links : nullptr;
+  KeptTransport* const keep_links = options.check_laws ? &used.links : keep;
   FormFactorMatrix* const keep_matrix = options.check_laws ? &used.matrix : nullptr;
   constexpr double kShareToCheck = 0.1;  // of the time that is left
   const Monitor solving = options.check_laws ? monitor.within((1 - kShareToCheck) * monitor.seconds_left()) : monitor;

@@ -8,6 +8,7 @@
 
 #include "solver/illumination/problem.h"
 #include "solver/methods/form_factor_matrix.h"
+#include "solver/methods/kept_transport.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/laws.h"
 #include "solver/model/method.h"
@@ -66,6 +67,7 @@ struct AroundSolve {
 /// Solves by the method asked for, and shows the result at vertices.
 ///
 /// map           the lightmap of problem.patches.
+/// keep          null, or where the hierarchical method leaves its transport, where nothing stopped it.
 /// longest_edge  of the patches [m]; the hierarchical method halves them down to a share of it.
 /// debug         filled by the hierarchical method where it is asked for; nothing is computed for it otherwise.
 /// throws        InputError when the method needs more memory than there is, or cannot do what the scene has;
@@ -75,7 +77,8 @@ struct AroundSolve {
 /// were not reached then show the mean of their elements. With a deadline fewer rays are sent rather than that; where
 /// that was so, Solution::stop tells. Threads: same bits for any thread count.
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor = {}, HierarchyDebug* debug = nullptr, const AroundSolve& around = {});
+                    const Monitor& monitor = {}, HierarchyDebug* debug = nullptr, const AroundSolve& around = {},
+                    KeptTransport* keep = nullptr);
 
 /// The first half of that for any method but the hierarchical one, which makes elements of its own: radiosity and
 /// irradiance of every patch.

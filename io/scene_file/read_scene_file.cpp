@@ -14,6 +14,7 @@
 #include "io/scene_file/json_object.h"
 #include "io/scene_file/luminaire_entries.h"
 #include "io/scene_file/material_rules.h"
+#include "io/scene_file/place_and_time.h"
 #include "io/scene_file/place_model.h"
 #include "io/scene_file/room_entries.h"
 #include "io/scene_file/sensor_entries.h"
@@ -144,6 +145,9 @@ Scene read_scene_file(const std::filesystem::path& file) {
   read_luminaire_entries(root, name, folder, photometry, channels, scene);
   std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, photometry, channels, scene);
   scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
+  const PlaceAndTime at = read_place_and_time(root, name);
+  scene.place = at.place;
+  scene.north_deg = at.north_deg;
   if (root.has("solver")) {
     scene.settings = read_settings(JsonObject(root.at("solver"), name + ": solver",
                                               {"method", "accuracy", "oracle", "max_element", "detail", "target_error",

@@ -8,14 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "solver/model/annual.h"
+
 namespace clerestory {
 
-inline constexpr std::size_t kHoursOfYear = 8760;
-inline constexpr std::size_t kDaylightHours = 4380;   ///< of EN 17037: half of the year
-inline constexpr double kUsefulLux[2] = {100, 3000};  ///< UDI: useful from the one to the other, both included
-inline constexpr double kSunLux = 1000;               ///< ASE: above it; blinds: from it on
-inline constexpr int kSunHours = 250;                 ///< of ASE
-inline constexpr std::array<double, 4> kEn17037Lux = {100, 300, 500, 750};
 inline constexpr std::size_t kMostThresholds = 4;  ///< besides that of daylight autonomy
 
 /// Which hours count, and of how many. Light is given for H hours of the year; all others are dark, and stay in the
@@ -71,27 +67,6 @@ struct YearFigure {
 /// DA_300, cDA_300, UDI_lower, UDI, UDI_upper, ASE_hours, mean_illuminance, EN17037_100, _300, _500, _750, then
 /// hours_LUX for each of more_thresholds. DA and cDA are named by the threshold.
 std::vector<YearFigure> year_figures(const YearRules& rules);
-
-enum class En17037Level { none, minimum, medium, high };
-/// In the order of the enumerators.
-inline constexpr const char* kEn17037LevelNames[] = {"none", "minimum", "medium", "high"};
-
-/// A share of area [%], and where it lies under the errors of the illuminances.
-struct ShareWithin {
-  double value = 0, low = 0, high = 0;
-};
-
-/// A room or a grid.
-struct AreaYear {
-  double area = 0;            ///< [m2], or whatever the weights are
-  ShareWithin sDA;            ///< area with DA >= 50 %
-  ShareWithin ASE_more_than;  ///< area with direct sun in more than 250 hours
-  ShareWithin ASE_at_least;   ///< area with direct sun in 250 hours or more
-  /// Of minimum, medium and high: area that has the target, and the minimum illuminance, in half of the daylight hours.
-  std::array<double, 3> target_share{}, minimum_share{};  ///< [%]
-  En17037Level level = En17037Level::none;                ///< the highest with the target on 50 %, the minimum on 95 %
-  double mean = 0;                                        ///< over area and occupied hours [lx]
-};
 
 /// weight  area that each point stands for, >= 0; their sum > 0.
 AreaYear area_year(std::span<const PointYear> points, std::span<const double> weight, const YearRules& rules);

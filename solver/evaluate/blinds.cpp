@@ -4,7 +4,6 @@
 #include <bit>
 #include <vector>
 
-#include "solver/evaluate/annual_figures.h"
 #include "solver/model/assert.h"
 
 namespace clerestory {

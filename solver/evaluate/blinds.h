@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "solver/model/annual.h"
+
 namespace clerestory {
 
 inline constexpr std::size_t kMostWindowGroups = 64;  ///< of one room
@@ -33,15 +35,10 @@ struct BlindsOfHour {
 /// where each point has its sun through one group. Thread safe.
 BlindsOfHour close_blinds(std::span<const WindowGroup> groups, std::span<const float> steady = {});
 
-/// Hours of a room's year, for the schedule's hours.
-struct BlindsYear {
-  int hours_closed = 0;         ///< in which any blinds are closed
-  int hours_not_complying = 0;  ///< in which more than 2 % of the points have sun whatever is closed
-
-  void add(const BlindsOfHour& hour) {
-    hours_closed += hour.closed != 0;
-    hours_not_complying += !hour.complies;
-  }
-};
+/// Counts an occupied hour.
+inline void add_hour(const BlindsOfHour& hour, BlindsYear& year) {
+  year.hours_closed += hour.closed != 0;
+  year.hours_not_complying += !hour.complies;
+}
 
 }  // namespace clerestory

@@ -84,6 +84,8 @@ struct Scene {
   std::vector<std::string> surfaces;  ///< names, by SurfaceId
   LightSpec lights;
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
+  std::optional<Place> place;        ///< on earth, as the scene file says it
+  double north_deg = 0;              ///< of the scene's north, clockwise from +y, as the scene file says it
   std::vector<SensorSet> sensors;
   std::vector<NamedSpace> spaces;    ///< rooms that the models name
   std::vector<NamedSurfaces> rooms;  ///< that the scene file names

@@ -57,7 +57,7 @@ TEST(Blinds, HoursThatNeverComplyAreToldAndCloseWhatHelps) {
   EXPECT_TRUE(close({lit(100, 0, 50, 5000)}, 0.1).complies);
 
   BlindsYear year;
-  year.add(thin), year.add(roof), year.add({}), year.add({1, true});
+  for (const BlindsOfHour& hour : {thin, roof, BlindsOfHour{}, BlindsOfHour{1, true}}) add_hour(hour, year);
   EXPECT_EQ(year.hours_closed, 2);
   EXPECT_EQ(year.hours_not_complying, 2);
 }

@@ -24,6 +24,7 @@ Settings effective_settings(const CommonArguments& common, const SolveArguments&
   if (arguments.channels) s.channels = *arguments.channels == "1" ? 1 : 3;
   if (arguments.grey) s.channels = 1;
   s.solve.check_laws = arguments.check;
+  s.layers = arguments.layers;
   s.debug = !arguments.debug_output.empty();
   return s;
 }
@@ -40,6 +41,7 @@ std::vector<Figure> as_figures(const Settings& s, int channels, const ReadOption
   if (s.detail) out.push_back({"detail", *s.detail});
   if (s.target_error) out.push_back({"target_error", *s.target_error});
   if (s.error_samples) out.push_back({"error_samples", static_cast<long long>(*s.error_samples)});
+  if (s.layers) out.push_back({"layers", true});
   if (s.time_limit) out.push_back({"time_limit", *s.time_limit});
   if (s.memory_limit) out.push_back({"memory_limit", static_cast<long long>(*s.memory_limit)});
   if (read.unit) out.push_back({"unit", *read.unit});

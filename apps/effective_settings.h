@@ -14,7 +14,7 @@ namespace clerestory {
 /// As typed; empty when not given.
 struct SolveArguments {
   std::optional<std::string> method, accuracy, oracle, channels;
-  bool no_error = false, check = false;
+  bool no_error = false, check = false, layers = false;
   std::optional<std::size_t> error_samples;
   std::optional<double> max_element, detail, target_error, time_limit;
   std::optional<std::string> memory_limit;

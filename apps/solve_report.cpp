@@ -82,7 +82,8 @@ std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
   const std::size_t sides = 2 * c.triangles - c.dark_sides;
   const bool has_matrix = s.solution.method == "gauss-seidel" || s.solution.method == "jacobi";
   return (has_matrix ? form_factor_bytes(c.elements) : 0) +
-         predicted_memory({s.repairs.input_triangles, c.triangles, sides, c.elements, c.points, c.links});
+         predicted_memory({s.repairs.input_triangles, c.triangles, sides, c.elements, c.points, c.links,
+                           s.layers.layers.size() * static_cast<std::size_t>(s.patches.channels)});
 }
 
 }  // namespace
@@ -151,6 +152,12 @@ std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors)
   return lines;
 }
 
+std::string layer_line(const ShownLayer& layer) {
+  return "'" + quotable(layer.name, 40) + "' " + rounded(layer.luminous_flux(), 4) + " lm, " +
+         rounded(layer.energy.emitted, 4) + " W emitted, " + rounded(layer.energy.absorbed, 4) + " W absorbed, " +
+         rounded(layer.energy.escaped, 4) + " W escaped";
+}
+
 std::string law_line(const LawCheck& check, const std::string& method) {
   const std::string name = in_words(check.law) + ": ";
   if (!check.not_checked.empty()) return name + "not checked for " + method + ", " + check.not_checked;
@@ -192,6 +199,7 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.laws = s.laws;
   r.daylight = scene.daylight;
   r.luminaires = luminaires_by_file(scene.lights);
+  r.layers = shown_layers(s);
   if (s.sensor_E.size() > 0) r.sensors = summaries_of(scene.sensors, s.sensor_E, daylight_reference(scene.lights));
   r.spaces = figures_of(scene.spaces);
   r.not_read = scene.not_read;
@@ -221,6 +229,7 @@ void say_summary(const RunReport& r, const Solved& s, Console& console) {
   else if (std::ranges::all_of(s.sensor_E.value, [](double value) { return value == 0; }) && !r.sensors.empty())
     console.say("  sensors no light arrives at them, so there is no error to tell");
   for (const LawCheck& check : s.laws) console.say("  law     " + law_line(check, r.method));
+  for (const ShownLayer& layer : r.layers) console.say("  layer   " + layer_line(layer));
   if (!r.sensors.empty())
     for (const std::string& line : sensor_table(r.sensors)) console.say("  " + line);
   console.say("  time    " + duration(t.total) + " (read " + duration(t.read) + ", mesh " + duration(t.mesh) +

@@ -16,6 +16,9 @@ std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights);
 /// A table of the sets, one line each below its header; [lx].
 std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors);
 
+/// "'desk' 3200 lm, 17.9 W emitted, 17 W absorbed, 0.9 W escaped"
+std::string layer_line(const ShownLayer& layer);
+
 /// "1.2 % rms (+- 0.1 %), 95 % of points within 3 %, measured at 257 points"
 std::string error_line(const MeasuredError& error);
 

@@ -147,7 +147,8 @@ std::vector<Material> materials_of(const Tables& tables, const WrittenResult& re
   return materials;
 }
 
-std::vector<MeasuredSensors> sensors_of(const Tables& tables, const WrittenResult& result) {
+/// layers  how many there are.
+std::vector<MeasuredSensors> sensors_of(const Tables& tables, const WrittenResult& result, std::size_t layers) {
   const auto at = result.texts.find(arrays::kSensorSets);
   if (at == result.texts.end()) return {};
   const std::size_t n = at->second.size();
@@ -163,14 +164,49 @@ std::vector<MeasuredSensors> sensors_of(const Tables& tables, const WrittenResul
   const auto position = tables.positions(arrays::kSensorPositions, set.size()),
              normal = tables.positions(arrays::kSensorNormals, set.size());
   const auto lux = tables.numbers(arrays::kSensorIlluminance, 1, set.size());
+  const int lanes = tables.has(arrays::kSensorLayers) ? static_cast<int>(layers) * result.channels() : 0;
+  const auto of_layers = lanes > 0 ? tables.numbers(arrays::kSensorLayers, lanes, set.size()) : std::vector<double>();
   for (std::size_t i = 0; i < set.size(); ++i) {
-    sensors[set[i]].set.points.push_back({position[i], normal[i]});
-    sensors[set[i]].illuminance.push_back(lux[i]);
+    MeasuredSensors& to = sensors[set[i]];
+    to.set.points.push_back({position[i], normal[i]});
+    to.illuminance.push_back(lux[i]);
+    const auto row = of_layers.begin() + static_cast<std::ptrdiff_t>(i) * lanes;
+    to.layers.channels = std::max(1, lanes);
+    to.layers.value.insert(to.layers.value.end(), row, row + lanes);
   }
   return sensors;
 }
 
-SceneAround around_of(const Tables& tables, const WrittenResult& result, const std::filesystem::path& file) {
+SkyTable sky_of(const Tables& tables, const std::string& name, int channels) {
+  SkyTable sky;
+  if (!tables.has(name.c_str())) return sky;
+  sky.radiance.channels = channels;
+  sky.radiance.value = tables.numbers(name.c_str(), channels, SkyTable::kRows * SkyTable::kColumns);
+  return sky;
+}
+
+/// throws  InputError when a layer has no light of its own.
+std::vector<ShownLayer> layers_of(const Tables& tables, const std::vector<std::string>& names,
+                                  const WrittenResult& result, const std::filesystem::path& file) {
+  const std::size_t n = names.size();
+  const auto energy = tables.numbers(arrays::kLayerEnergy, 3, n), factors = tables.numbers(arrays::kLayerFactors, 1, n);
+  std::vector<ShownLayer> layers;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::string array = of_layer("irradiance", names[i]);
+    for (const auto* arrays : {&result.of_points, &result.of_cells})
+      if (const auto at = arrays->find(array); at == arrays->end() || at->second.components != result.channels())
+        refuse(file, text("has a layer '", quotable(names[i]), "', and no array '", quotable(array),
+                          "' of as many components as 'irradiance'"));
+    layers.push_back({names[i],
+                      {energy[3 * i], energy[3 * i + 1], energy[3 * i + 2]},
+                      sky_of(tables, of_layer(arrays::kSky, names[i]), result.channels()),
+                      factors[i]});
+  }
+  return layers;
+}
+
+SceneAround around_of(const Tables& tables, const WrittenResult& result, const std::vector<std::string>& layers,
+                      const std::filesystem::path& file) {
   SceneAround around;
   if (const auto lux = tables.numbers(arrays::kDaylightReference, 1); !lux.empty()) around.daylight_reference = lux[0];
   const auto corners = tables.positions(arrays::kPaneCorners);
@@ -179,13 +215,11 @@ SceneAround around_of(const Tables& tables, const WrittenResult& result, const s
              surface = tables.indices(arrays::kPaneSurface, result.surfaces.size(), corners.size() / 3);
   for (std::size_t i = 0; i < material.size(); ++i)
     around.panes.push_back({{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}, material[i], surface[i]});
-  if (tables.has(arrays::kSky)) {
-    around.sky.radiance.channels = result.channels();
-    around.sky.radiance.value = tables.numbers(arrays::kSky, result.channels(), SkyTable::kRows * SkyTable::kColumns);
-  }
+  around.sky = sky_of(tables, arrays::kSky, result.channels());
   if (const auto files = result.texts.find(arrays::kSceneFiles); files != result.texts.end())
     around.files = files->second;
-  around.sensors = sensors_of(tables, result);
+  around.sensors = sensors_of(tables, result, layers.size());
+  around.layers = layers_of(tables, layers, result, file);
   const auto at = tables.positions(arrays::kLuminairePositions);
   const auto flux = tables.numbers(arrays::kLuminaireFlux, 1, at.size());
   const auto name = names(result, arrays::kLuminaireNames, at.size()),
@@ -314,7 +348,7 @@ WrittenResult read_result(const std::filesystem::path& file) {
   result.material = of_cells("material", result.materials.size());
   result.surface = of_cells("surface", result.surfaces.size());
   if (result.of_cells.contains("room")) result.room = of_cells("room", result.rooms.size());
-  result.around = around_of(tables, result, file);
+  result.around = around_of(tables, result, take(result.texts, arrays::kLayerNames), file);
   for (const std::string& report : take(result.texts, arrays::kReport)) result.report = report;
   return result;
 }

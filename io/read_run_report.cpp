@@ -79,6 +79,33 @@ Daylight daylight_of(const Json& json) {
   return daylight;
 }
 
+MeshReport repairs_of(const Json& json) {
+  MeshReport r;
+  const std::pair<const char*, std::size_t*> counts[] = {{"input_faces", &r.input_faces},
+                                                         {"input_triangles", &r.input_triangles},
+                                                         {"welded_vertices", &r.welded_vertices},
+                                                         {"non_finite_faces", &r.non_finite_faces},
+                                                         {"degenerate_faces", &r.degenerate_faces},
+                                                         {"duplicate_faces", &r.duplicate_faces},
+                                                         {"opposite_faces", &r.opposite_faces},
+                                                         {"overlapping_regions", &r.overlapping_regions},
+                                                         {"t_junctions", &r.t_junctions},
+                                                         {"imprinted_contacts", &r.imprinted_contacts},
+                                                         {"imprinted_outlines", &r.imprinted_outlines},
+                                                         {"simplified_parts", &r.simplified_parts},
+                                                         {"simplified_faces", &r.simplified_faces},
+                                                         {"non_manifold_edges", &r.non_manifold_edges},
+                                                         {"boundary_edges", &r.boundary_edges},
+                                                         {"planar_regions", &r.planar_regions}};
+  for (const auto& [name, count] : counts) *count = get<std::size_t>(json, name);
+  const std::pair<const char*, double*> lengths[] = {
+      {"simplified_by", &r.simplified_by},     {"max_element", &r.max_element},
+      {"longest_edge", &r.longest_edge},       {"shortest_edge", &r.shortest_edge},
+      {"worst_angle_deg", &r.worst_angle_deg}, {"median_angle_deg", &r.median_angle_deg}};
+  for (const auto& [name, length] : lengths) *length = get<double>(json, name);
+  return r;
+}
+
 StopReason stop_of(const std::string& name) {
   for (const StopReason stop : {StopReason::time_limit, StopReason::interrupted, StopReason::iteration_limit})
     if (stop_name(stop) == name) return stop;
@@ -94,10 +121,14 @@ RunReport report_of(const Json& json) {
   const Json& counts = member(json, "counts");
   r.counts.triangles = get<std::size_t>(counts, "triangles");
   r.counts.elements = get<std::size_t>(counts, "elements");
+  r.counts.dark_sides = get<std::size_t>(counts, "dark_sides");
+  r.counts.clusters = get<std::size_t>(counts, "clusters");
+  r.counts.openings = get<std::size_t>(counts, "openings");
   r.counts.points = get<std::size_t>(counts, "points");
   r.counts.links = get<std::size_t>(counts, "links");
   r.counts.sensors = get<std::size_t>(counts, "sensors");
   r.counts.rays = get<unsigned long long>(counts, "rays");
+  r.predicted_memory_bytes = get<std::size_t>(json, "predicted_memory_bytes");
   r.iterations = get<long>(json, "iterations");
   r.residual = get<double>(json, "residual");
   r.stop = stop_of(get<std::string>(json, "stop"));
@@ -118,6 +149,12 @@ RunReport report_of(const Json& json) {
   }
   if (const Json& daylight = member(json, "daylight"); !daylight.empty()) r.daylight = daylight_of(daylight);
   r.luminaires = rows_of<RunReport::Luminaires>(json, "luminaires", luminaires_of);
+  r.layers = rows_of<ShownLayer>(json, "layers", [](const Json& l) -> ShownLayer {
+    return {get<std::string>(l, "name"),
+            {get<double>(l, "emitted"), get<double>(l, "absorbed"), get<double>(l, "escaped")},
+            {},
+            get<double>(l, "factor", 1)};
+  });
   r.spaces = rows_of<RunReport::Space>(json, "spaces", [](const Json& s) -> RunReport::Space {
     return {get<std::string>(s, "name"), get<std::string>(s, "long_name"), get<double>(s, "area"),
             get<double>(s, "height"), get<double>(s, "volume")};
@@ -125,6 +162,7 @@ RunReport report_of(const Json& json) {
   r.not_read = rows_of<NotRead>(json, "not_read", [](const Json& n) -> NotRead {
     return {get<std::string>(n, "what"), get<std::size_t>(n, "count"), get<std::string>(n, "first")};
   });
+  r.repairs = repairs_of(member(json, "repairs"));
   r.warnings = get<std::vector<std::string>>(json, "warnings");
   r.left_out = get<std::vector<std::string>>(json, "left_out");
   return r;

@@ -7,7 +7,7 @@
 
 namespace clerestory {
 
-/// What repeatable_text() wrote, but repairs and laws. An empty text is an empty report.
+/// What repeatable_text() wrote, but summaries of sensors. An empty text is an empty report.
 ///
 /// file    for messages.
 /// throws  InputError when the text is no such report.

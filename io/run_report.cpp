@@ -87,6 +87,15 @@ Json json_of(const RunReport::Luminaires& l) {
   return json;
 }
 
+Json json_of(const ShownLayer& l) {
+  return {{"name", l.name},
+          {"factor", l.factor},
+          {"luminous_flux", l.luminous_flux()},
+          {"emitted", l.energy.emitted},
+          {"absorbed", l.energy.absorbed},
+          {"escaped", l.energy.escaped}};
+}
+
 Json json_of(const SensorSummary& s) {
   Json json = {{"name", s.name},     {"kind", kSensorKindNames[static_cast<std::size_t>(s.kind)]},
                {"points", s.points}, {"mean", s.mean},
@@ -250,6 +259,7 @@ Json repeatable_json(const RunReport& report) {
   if (report.error && report.worst_space) json["error"]["worst"] = json_of(report.error_spaces[*report.worst_space]);
   if (report.error_sensors) json["error_sensors"]["sets"] = array_of(report.error_sets);
   if (!report.luminaires.empty()) json["luminaires"] = array_of(report.luminaires);
+  if (!report.layers.empty()) json["layers"] = array_of(report.layers);
   if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
   if (!report.spaces.empty()) json["spaces"] = array_of(report.spaces);
   if (!report.not_read.empty()) json["not_read"] = array_of(report.not_read);

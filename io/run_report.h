@@ -11,6 +11,7 @@
 #include "solver/model/laws.h"
 #include "solver/model/mesh_report.h"
 #include "solver/model/scene.h"
+#include "solver/model/scene_around.h"
 #include "solver/model/solution.h"
 #include "solver/model/stage_seconds.h"
 
@@ -69,6 +70,7 @@ struct RunReport {
     double lamp_flux = 0;      ///< of one's bare lamps, as its file says [lm]; 0: it does not
   };
   std::vector<Luminaires> luminaires;
+  std::vector<ShownLayer> layers;  ///< empty: it was not solved in layers
   struct Space {
     std::string name, long_name;
     double area = 0, height = 0, volume = 0;  ///< [m2], [m], [m3]; 0 where the model gives no volume

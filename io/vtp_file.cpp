@@ -113,7 +113,7 @@ class StreamWriter : public vtkXMLPolyDataWriter {
 
 }  // namespace
 
-void write_vtp(AtomicFile& file, vtkPolyData* data) {
+void write_vtp(AtomicFile& file, vtkPolyData* data, Packing packing) {
   FileBuffer buffer(file);
   std::ostream out(&buffer);
   vtkNew<StreamWriter> writer;
@@ -122,8 +122,12 @@ void write_vtp(AtomicFile& file, vtkPolyData* data) {
   writer->SetInputData(data);
   // Inline though 30 % larger: ParaView of Debian 12 with today's libexpat refuses appended data (VTK issue 19258).
   writer->SetDataModeToBinary();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);  // 6 halves the speed and saves 3 % on float fields
+  if (packing == Packing::plain) {
+    writer->SetCompressorTypeToNone();
+  } else {
+    writer->SetCompressorTypeToZLib();
+    writer->SetCompressionLevel(1);  // 6 halves the speed and saves 3 % on float fields
+  }
   const bool written = writer->Write() != 0 && writer->GetErrorCode() == 0 && out;
   buffer.finish();
   if (!written) throw std::runtime_error("VTK could not write " + file.destination().string());

@@ -17,20 +17,32 @@
 #include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
 
+#include "io/as_written.h"
 #include "io/result_arrays.h"
 #include "io/vtp_file.h"
-#include "solver/model/units.h"
 
 namespace clerestory {
 namespace {
 
-void add_field(vtkFieldData* to, const char* name, const Field& field) {
+/// The numbers stay where they are, and must outlive the data.
+void add_array(vtkFieldData* to, const std::string& name, const WrittenArray& from) {
   vtkNew<vtkFloatArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(field.channels);
-  array->SetNumberOfTuples(id(field.size()));
-  for (std::size_t i = 0; i < field.value.size(); ++i) array->SetValue(id(i), to_float(field.value[i], name, i));
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(from.components);
+  array->SetArray(const_cast<float*>(from.value.data()), id(from.value.size()), 1);  // NOLINT: VTK only reads it
   to->AddArray(array);
+}
+
+/// What cells and points have in common: first in the file, in this order.
+void add_light(vtkFieldData* to, const std::map<std::string, WrittenArray>& from) {
+  for (const char* name :
+       {"irradiance", "illuminance", "radiosity", "luminance", "daylight_factor", "irradiance_std_error"})
+    if (const auto at = from.find(name); at != from.end()) add_array(to, name, at->second);
+}
+/// What is not there yet.
+void add_rest(vtkFieldData* to, const std::map<std::string, WrittenArray>& from) {
+  for (const auto& [name, array] : from)
+    if (!to->HasArray(name.c_str())) add_array(to, name, array);
 }
 
 template <class Value>
@@ -40,45 +52,6 @@ void add_indices(vtkFieldData* to, const char* name, std::size_t n, const Value&
   array->SetNumberOfTuples(id(n));
   for (std::size_t i = 0; i < n; ++i) array->SetValue(id(i), static_cast<int>(value(i)));
   to->AddArray(array);
-}
-
-/// The arrays that cells and points have in common.
-void add_light(vtkFieldData* to, const Field& E, const Field& B, std::optional<double> daylight_reference) {
-  add_field(to, "irradiance", E);
-  add_values(to, "illuminance", E.size(), [&](std::size_t i) { return photometric(E[i]); });
-  add_field(to, "radiosity", B);
-  add_values(to, "luminance", B.size(), [&](std::size_t i) { return luminance_of_radiosity(B[i]); });
-  if (daylight_reference)
-    add_values(to, "daylight_factor", E.size(),
-               [&](std::size_t i) { return 100 * photometric(E[i]) / *daylight_reference; });
-}
-
-/// Irradiance behind a diffuser's patch p at x, linear between the points of the patch that lies there.
-Spectrum irradiance_behind(const PatchSet& patches, const VertexLightmap& lightmap, std::size_t p, const Vec3& x) {
-  Spectrum E(0.0);
-  double best = -1e300;
-  for (const PatchSet::Behind& other : patches.patches_behind(p)) {
-    const auto c = patches.corner_positions(other.patch);
-    const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
-    const double v = dot(cross(c[2] - x, c[0] - x), n) / dot(n, n), w = dot(cross(c[0] - x, c[1] - x), n) / dot(n, n);
-    const double inside = std::min({1 - v - w, v, w});
-    if (!(inside > best)) continue;
-    best = inside;
-    const auto& point = lightmap.corners[other.patch];
-    E = lightmap.E[point[0]] * (1 - v - w) + lightmap.E[point[1]] * v + lightmap.E[point[2]] * w;
-  }
-  return E;
-}
-
-Field radiosity_at_points(const PatchSet& patches, const VertexLightmap& lightmap) {
-  Field B(lightmap.position.size(), lightmap.E.channels);
-  for (std::size_t i = 0; i < B.size(); ++i) {
-    const std::size_t p = lightmap.patch_of_point[i];
-    B.set(i, patches.M[p] + patches.rho[p] * lightmap.E[i]);
-    if (!patches.patches_behind(p).empty())
-      B.add(i, patches.tau[p] * irradiance_behind(patches, lightmap, p, lightmap.position[i]));
-  }
-  return B;
 }
 
 void add_names(vtkFieldData* to, const char* name, std::size_t n, const auto& value) {
@@ -100,14 +73,13 @@ void add_figure(vtkFieldData* to, const Figure& figure) {
   if (const auto* flag = std::get_if<bool>(&figure.value)) add(vtkNew<vtkIntArray>().Get(), *flag ? 1 : 0);
 }
 
-void add_field_data(vtkPolyData* data, const PatchSet& patches, const RunReport& report) {
+void add_field_data(vtkPolyData* data, const std::vector<Material>& materials, const std::vector<std::string>& rooms,
+                    const std::vector<std::string>& surfaces, const RunReport& report) {
   vtkFieldData* to = data->GetFieldData();
   for (const Figure& figure : repeatable_figures(report)) add_figure(to, figure);
-  add_names(to, arrays::kMaterialNames, patches.materials.size(),
-            [&](std::size_t i) { return patches.materials[i].name; });
-  if (!patches.rooms.empty())
-    add_names(to, arrays::kRoomNames, patches.rooms.size(), [&](std::size_t i) { return patches.rooms[i]; });
-  add_names(to, arrays::kSurfaceNames, patches.surfaces.size(), [&](std::size_t i) { return patches.surfaces[i]; });
+  add_names(to, arrays::kMaterialNames, materials.size(), [&](std::size_t i) { return materials[i].name; });
+  if (!rooms.empty()) add_names(to, arrays::kRoomNames, rooms.size(), [&](std::size_t i) { return rooms[i]; });
+  add_names(to, arrays::kSurfaceNames, surfaces.size(), [&](std::size_t i) { return surfaces[i]; });
 }
 
 /// n tuples of numbers, value(i, c) each.
@@ -166,6 +138,14 @@ void add_sensors(vtkFieldData* to, const std::vector<MeasuredSensors>& sensors) 
   add_positions(to, arrays::kSensorPositions, points.size(), [&](std::size_t i) { return points[i].position; });
   add_positions(to, arrays::kSensorNormals, points.size(), [&](std::size_t i) { return points[i].normal; });
   add_numbers(to, arrays::kSensorIlluminance, points.size(), 1, [&](std::size_t i, int) { return lux[i]; });
+  const int lanes = sensors.front().layers.channels;
+  if (sensors.front().layers.value.empty()) return;
+  std::vector<double> of_layers;
+  for (const MeasuredSensors& s : sensors)
+    of_layers.insert(of_layers.end(), s.layers.value.begin(), s.layers.value.end());
+  add_numbers(to, arrays::kSensorLayers, points.size(), lanes, [&](std::size_t i, int c) {
+    return of_layers[i * static_cast<std::size_t>(lanes) + static_cast<std::size_t>(c)];
+  });
 }
 
 void add_luminaires(vtkFieldData* to, const std::vector<ShownLuminaire>& luminaires) {
@@ -177,17 +157,43 @@ void add_luminaires(vtkFieldData* to, const std::vector<ShownLuminaire>& luminai
   add_names(to, arrays::kLuminaireGroups, n, [&](std::size_t i) { return luminaires[i].group; });
 }
 
-void add_around(vtkFieldData* to, const PatchSet& patches, const SceneAround& around, const RunReport& report) {
+void add_sky(vtkFieldData* to, const std::string& name, const SkyTable& sky) {
+  if (sky.empty()) return;
+  const Field& L = sky.radiance;
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(L.channels);
+  array->SetNumberOfTuples(id(L.size()));
+  for (std::size_t k = 0; k < L.value.size(); ++k) array->SetValue(id(k), to_float(L.value[k], name.c_str(), k));
+  to->AddArray(array);
+}
+
+void add_layers(vtkFieldData* to, const std::vector<ShownLayer>& layers) {
+  const std::size_t n = layers.size();
+  if (n == 0) return;
+  add_names(to, arrays::kLayerNames, n, [&](std::size_t i) { return layers[i].name; });
+  add_numbers(to, arrays::kLayerEnergy, n, 3, [&](std::size_t i, int c) {
+    const EnergyBalance& e = layers[i].energy;
+    return c == 0 ? e.emitted : c == 1 ? e.absorbed : e.escaped;
+  });
+  add_numbers(to, arrays::kLayerFlux, n, 1, [&](std::size_t i, int) { return layers[i].luminous_flux(); });
+  add_numbers(to, arrays::kLayerFactors, n, 1, [&](std::size_t i, int) { return layers[i].factor; });
+  for (const ShownLayer& layer : layers) add_sky(to, of_layer(arrays::kSky, layer.name), layer.sky);
+}
+
+void add_around(vtkFieldData* to, const std::vector<Material>& materials, const SceneAround& around,
+                const RunReport& report) {
   add_indices(to, arrays::kFormat, 1, [](std::size_t) { return arrays::kFormatNumber; });
   add_names(to, arrays::kReport, 1, [&](std::size_t) { return repeatable_text(report); });
   if (!around.files.empty())
     add_names(to, arrays::kSceneFiles, around.files.size(), [&](std::size_t i) { return around.files[i]; });
-  add_materials(to, patches.materials);
+  add_materials(to, materials);
   add_panes(to, around.panes);
-  if (!around.sky.empty()) add_field(to, arrays::kSky, around.sky.radiance);
+  add_sky(to, arrays::kSky, around.sky);
   if (around.daylight_reference)
     add_numbers(to, arrays::kDaylightReference, 1, 1, [&](std::size_t, int) { return *around.daylight_reference; });
   add_sensors(to, around.sensors);
+  add_layers(to, around.layers);
   add_luminaires(to, around.luminaires);
 }
 
@@ -217,28 +223,34 @@ Quality quality(const std::array<Vec3, 3>& p, double area) {
 
 }  // namespace
 
-void write_result(AtomicFile& file, const PatchSet& patches, const VertexLightmap& lightmap, const Solution& solution,
-                  const SceneAround& around, const RunReport& report) {
+void write_result(AtomicFile& file, const WrittenResult& result, const RunReport& report) {
   vtkNew<vtkPolyData> data;
-  set_points(data, lightmap.position, patches.origin);
+  set_points(data, result.points, {});
   vtkNew<vtkCellArray> cells;
-  for (const auto& c : lightmap.corners) add_triangle(cells, c[0], c[1], c[2]);
+  for (const auto& c : result.triangles) add_triangle(cells, c[0], c[1], c[2]);
   data->SetPolys(cells);
 
-  add_light(data->GetCellData(), solution.E, solution.B, around.daylight_reference);
-  if (!solution.std_error.value.empty()) add_field(data->GetCellData(), "irradiance_std_error", solution.std_error);
-  add_indices_of_patches(data->GetCellData(), patches);
-  if (!patches.room.empty())
-    add_indices(data->GetCellData(), "room", patches.patch_count(), [&](std::size_t i) { return patches.room[i]; });
-  add_indices(data->GetCellData(), "level", patches.patch_count(),
-              [&](std::size_t i) { return patches.level.empty() ? 0 : patches.level[i]; });
-  add_light(data->GetPointData(), lightmap.E, radiosity_at_points(patches, lightmap), around.daylight_reference);
-  if (!lightmap.std_error.value.empty()) add_field(data->GetPointData(), "irradiance_std_error", lightmap.std_error);
-  add_field_data(data, patches, report);
-  add_around(data->GetFieldData(), patches, around, report);
+  const auto add_index = [&](const char* name, const auto& index) {
+    if (!index.empty()) add_indices(data->GetCellData(), name, index.size(), [&](std::size_t i) { return index[i]; });
+  };
+  add_light(data->GetCellData(), result.of_cells);
+  add_index("material", result.material);
+  add_index("surface", result.surface);
+  add_index("room", result.room);
+  add_index("level", result.of_cells.at("level").value);
+  add_rest(data->GetCellData(), result.of_cells);
+  add_light(data->GetPointData(), result.of_points);
+  add_rest(data->GetPointData(), result.of_points);
+  add_field_data(data, result.materials, result.rooms, result.surfaces, report);
+  add_around(data->GetFieldData(), result.materials, result.around, report);
   data->GetCellData()->SetActiveScalars("illuminance");
   data->GetPointData()->SetActiveScalars("illuminance");
-  write_vtp(file, data);
+  write_vtp(file, data, result.around.layers.empty() ? Packing::zlib : Packing::plain);
+}
+
+void write_result(AtomicFile& file, const PatchSet& patches, const VertexLightmap& lightmap, const Solution& solution,
+                  const SceneAround& around, const RunReport& report, const LayeredLight& layers) {
+  write_result(file, as_written(patches, lightmap, solution, around, layers), report);
 }
 
 void write_result(const std::filesystem::path& file, const PatchSet& patches, const VertexLightmap& lightmap,
@@ -266,7 +278,7 @@ void write_patches(AtomicFile& file, const PatchSet& patches, const RunReport& r
   add_values(to, "aspect", n, [&](std::size_t i) { return of_patch(i).aspect; });
   add_values(to, "longest_edge", n, [&](std::size_t i) { return of_patch(i).longest_edge; });
   add_indices_of_patches(to, patches);
-  add_field_data(data, patches, report);
+  add_field_data(data, patches.materials, patches.rooms, patches.surfaces, report);
   to->SetActiveScalars("min_angle");
   write_vtp(file, data);
 }

@@ -1,5 +1,7 @@
 #include "pipeline/collect_around.h"
 
+#include <span>
+
 #include "solver/lights/luminaire.h"
 #include "solver/lights/sky.h"
 #include "solver/model/units.h"
@@ -7,13 +9,8 @@
 namespace clerestory {
 namespace {
 
-SkyTable sky_table(const LightSpec& spec, int channels) {
+SkyTable table_of(const SkyRadiance& sky, int channels) {
   SkyTable table;
-  if (!spec.sky) return table;
-  Lights lights;
-  lights.sky = spec.sky;
-  for (const Sun& sun : spec.suns) lights.suns.push_back({sun});
-  const SkyRadiance sky(lights);
   if (sky.dark()) return table;
   table.radiance = Field(SkyTable::kRows * SkyTable::kColumns, channels);
   for (std::size_t i = 0; i < table.radiance.size(); ++i) {
@@ -23,12 +20,25 @@ SkyTable sky_table(const LightSpec& spec, int channels) {
   return table;
 }
 
-std::vector<MeasuredSensors> measured_sensors(const std::vector<SensorSet>& sets, const Field& E) {
+SkyTable sky_table(const LightSpec& spec, int channels) {
+  Lights lights;
+  lights.sky = spec.sky;
+  for (const Sun& sun : spec.suns) lights.suns.push_back({sun});
+  return table_of(SkyRadiance(lights), channels);
+}
+
+std::vector<MeasuredSensors> measured_sensors(const std::vector<SensorSet>& sets, const Field& E, const Field& layers) {
   std::vector<MeasuredSensors> measured;
   if (E.size() == 0) return measured;
   std::size_t next = 0;
   for (const SensorSet& set : sets) {
     MeasuredSensors& m = measured.emplace_back(MeasuredSensors{set, {}});
+    if (!layers.value.empty()) {
+      const auto lanes = static_cast<std::size_t>(layers.channels);
+      const auto rows = std::span(layers.value).subspan(next * lanes, set.points.size() * lanes);
+      m.layers.channels = layers.channels;
+      m.layers.value.assign(rows.begin(), rows.end());
+    }
     for (std::size_t i = 0; i < set.points.size(); ++i) m.illuminance.push_back(photometric(E[next++]));
   }
   return measured;
@@ -62,12 +72,24 @@ std::vector<PaneTriangle> panes_of(const PatchSet& patches) {
   return panes;
 }
 
+std::vector<ShownLayer> shown_layers(const Solved& solved) {
+  const auto& [layers, light, sensor_E, energy] = solved.layers;
+  std::vector<ShownLayer> shown;
+  if (light.empty()) return shown;
+  for (std::size_t s = 0; s < layers.size(); ++s) {
+    shown.push_back({layers[s].name, energy[s]});
+    if (layers[s].sky) shown.back().sky = table_of(*layers[s].sky, solved.patches.channels);
+  }
+  return shown;
+}
+
 SceneAround collect_around(const Scene& scene, const Solved& solved) {
   return {daylight_reference(scene.lights),
           solved.panes,
           sky_table(scene.lights, solved.patches.channels),
-          measured_sensors(scene.sensors, solved.sensor_E),
+          measured_sensors(scene.sensors, solved.sensor_E, solved.layers.sensor_E),
           shown_luminaires(scene.lights.luminaires),
+          shown_layers(solved),
           {scene.files.begin(), scene.files.end()}};
 }
 

@@ -16,6 +16,9 @@ std::optional<double> daylight_reference(const LightSpec& lights);
 /// Triangles of glass and of mirrors, before patches are parted.
 std::vector<PaneTriangle> panes_of(const PatchSet& patches);
 
+/// The layers that were solved, with what they have of the sky; none where there was no time for them.
+std::vector<ShownLayer> shown_layers(const Solved& solved);
+
 SceneAround collect_around(const Scene& scene, const Solved& solved);
 
 }  // namespace clerestory

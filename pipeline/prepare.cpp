@@ -11,6 +11,7 @@
 #include "pipeline/scene_checks.h"
 #include "pipeline/wording.h"
 #include "solver/illumination/place_lights.h"
+#include "solver/lights/layers.h"
 #include "solver/model/error.h"
 #include "solver/run/accuracy.h"
 #include "solver/run/memory_estimate.h"
@@ -104,7 +105,9 @@ std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& se
     if (!p) return {};
     const auto& [patches, repairs, rays, lights, lit_sides] = p->scene;
     settings.solve.memory_limit = memory_after_reading(limit, repairs);
-    if (has_memory_for(patches, p->lightmap, settings.solve)) {
+    const std::size_t layers = settings.layers ? layers_by_group(lights, patches).size() : 0;
+    const std::size_t lanes = layers * static_cast<std::size_t>(patches.channels);
+    if (has_memory_for(patches, p->lightmap, lanes, settings.solve)) {
       const bool coarser = asked > 0 ? repairs.max_element > 1.01 * asked : static_cast<double>(fit) < wanted;
       if (coarser)
         observer.warn("coarser than asked for, to stay below the memory limit of " + bytes(limit) +
@@ -115,7 +118,9 @@ std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& se
     const std::size_t triangles = repairs.triangles, sides = patches.patch_count();
     if (triangles > last / 10 * 9)
       refuse_memory(
-          scene, least_memory({repairs.input_triangles, triangles, sides, sides, p->lightmap.position.size()}), limit);
+          scene,
+          least_memory({repairs.input_triangles, triangles, sides, sides, p->lightmap.position.size(), 0, lanes}),
+          limit);
     last = triangles;
   }
 }

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <string>
 
+#include "io/text.h"
 #include "pipeline/wording.h"
+#include "solver/lights/layers.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
@@ -84,6 +86,18 @@ void check_lights(const Scene& scene) {
         refuse(scene, "sensors '" + set.name + "': a point has no position, or a normal that is not of length 1.");
 }
 
+/// Groups become layers, and layers names of arrays.
+void check_groups(const Scene& scene) {
+  const auto check = [&](const std::string& what, const std::string& group) {
+    if (const std::string problem = problem_with_group(group); !problem.empty())
+      refuse(scene, what + ": its group '" + quotable(group, 40) + "' " + problem + ", or solve without layers.");
+  };
+  for (const Luminaire& luminaire : scene.lights.luminaires)
+    check("luminaire '" + quotable(luminaire.name, 40) + "'", luminaire.group);
+  for (const Material& material : scene.materials)
+    check("material '" + quotable(material.name, 40) + "'", material.group);
+}
+
 void check_settings(const Scene& scene, const Settings& s) {
   const auto positive = [&](const std::optional<double>& x, const char* name) {
     if (x && !(std::isfinite(*x) && *x > 0))
@@ -101,6 +115,9 @@ void check_settings(const Scene& scene, const Settings& s) {
   positive(s.time_limit, "time_limit");
   if (s.channels && *s.channels != 1 && *s.channels != 3)
     refuse(scene, "channels = " + std::to_string(*s.channels) + "; 1 or 3 are possible.");
+  if (s.layers && s.solve.method != Method::hierarchical)
+    refuse(scene, "layers are of the hierarchical method only, and the method is " +
+                      std::string(kMethodNames[static_cast<std::size_t>(s.solve.method)]) + ".");
   if (s.solve.tighten < 0 || s.solve.tighten > 8)
     refuse(scene, "tighten = " + std::to_string(s.solve.tighten) + " is outside [0, 8].");
 }
@@ -112,6 +129,7 @@ void require_valid(const Scene& scene, const Settings& settings) {
   check_faces(scene);
   check_lights(scene);
   check_settings(scene, settings);
+  if (settings.layers) check_groups(scene);
 }
 
 }  // namespace clerestory

@@ -21,6 +21,7 @@ struct Settings {
   std::optional<double> time_limit{};          ///< [s]
   std::optional<std::size_t> memory_limit{};   ///< of the whole process [bytes]
   bool debug = false;                          ///< show what the hierarchical method did
+  bool layers = false;                         ///< also each group of luminaires, sky, sun, ... by itself (layers.h)
 
   /// The time limit counts from here, so that reading the scene may be part of it; empty: from solve_scene() on.
   std::optional<std::chrono::steady_clock::time_point> start{};

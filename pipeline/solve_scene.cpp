@@ -15,6 +15,7 @@
 #include "pipeline/result_checks.h"
 #include "pipeline/scene_checks.h"
 #include "solver/evaluate/sensor_planes.h"
+#include "solver/model/radiosity_at_points.h"
 #include "solver/run/accuracy.h"
 
 namespace clerestory {
@@ -75,6 +76,24 @@ PlanesAndE without(const std::vector<std::size_t>& numbers, const SensorPlanes& 
   return rest;
 }
 
+/// Radiosity is shown where it tells more than irradiance.
+void show_layers(LayeredField field, Solved& out) {
+  const PatchSet& patches = out.patches;
+  SolvedLayers& to = out.layers;
+  to.energy = std::move(field.energy);
+  if (!patches.tau.value.empty() || !std::ranges::all_of(patches.M.value, [](double M) { return M == 0; })) {
+    to.light.B = Field(field.E.size(), field.E.channels);
+    for (std::size_t s = 0; s < to.layers.size(); ++s) {
+      const Field B = radiosity_at_points(patches, out.lightmap, one_layer(field.E, s, patches.channels),
+                                          exitance(patches, {&to.layers[s], 1}));
+      set_layer(B, s, to.light.B);
+    }
+    to.light.B_elements = std::move(field.B);
+  }
+  to.light.E = std::move(field.E);
+  to.light.E_elements = std::move(field.E_elements);
+}
+
 }  // namespace
 
 Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer) {
@@ -108,8 +127,9 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         Lap lap;
         const SolveOptions& options = settings.solve;
         const AroundSolve around{sensors.planes, seconds.mesh + seconds.build};
+        if (settings.layers) out.layers.layers = layers_by_group(lights, patches);
         SolvedPatches solved = solve(problem, std::move(prepared->lightmap), repairs.max_element, options, solving,
-                                     settings.debug ? &out.debug : nullptr, around);
+                                     settings.debug ? &out.debug : nullptr, around, out.layers.layers);
         if (solved.rather) {
           out.rather = solved.rather;
           lap.add_to(seconds.gather);
@@ -123,11 +143,15 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         lap.add_to(seconds.gather);
 
         // -> irradiance at sensors.
-        const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, solving);
+        std::optional<RowLight> light_of_layers;
+        if (!solved.layers.empty()) light_of_layers.emplace(out.layers.layers, patches.channels, solved.layers.B);
+        const PointIrradiance at_planes = irradiance_at_sensors(problem, solution, sensors.planes, options, solving,
+                                                                light_of_layers ? &*light_of_layers : nullptr);
         if (at_planes.complete()) {
           out.sensor_E = mean_over_planes(sensors, at_planes.E);
           // The planes of one sensor share no path, but what they have in common may be off alike: not divided by root
           // N.
+          if (light_of_layers) out.layers.sensor_E = mean_over_planes(sensors, at_planes.layers);
           if (at_planes.std_error.size() > 0) out.sensor_std_error = mean_over_planes(sensors, at_planes.std_error);
         }
         solution.rays += at_planes.rays;
@@ -159,6 +183,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         out.patches = std::move(patches);
         out.laws = std::move(solved.laws);
         out.lightmap = std::move(solved.lightmap);
+        if (light_of_layers) show_layers(std::move(solved.layers), out);
         out.solution = std::move(solution);
         out.repairs = repairs;
         out.lit_sides = std::move(lit_sides);

@@ -7,8 +7,10 @@
 
 #include "pipeline/settings.h"
 #include "solver/evaluate/measured_error.h"
+#include "solver/lights/layers.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/laws.h"
+#include "solver/model/layered_light.h"
 #include "solver/model/mesh_report.h"
 #include "solver/model/patch_set.h"
 #include "solver/model/scene_around.h"
@@ -18,6 +20,14 @@
 #include "solver/spaces/lit_sides.h"
 
 namespace clerestory {
+
+/// Parts of the light, which sum to all of it.
+struct SolvedLayers {
+  std::vector<Layer> layers;          ///< that were asked for
+  LayeredLight light;                 ///< what they give; empty: there was no time
+  Field sensor_E;                     ///< S x lanes [W/m2]; empty like Solved::sensor_E
+  std::vector<EnergyBalance> energy;  ///< of each layer
+};
 
 struct Solved {
   PatchSet patches;         ///< the elements
@@ -33,6 +43,7 @@ struct Solved {
   LitSides lit_sides;
   std::size_t openings = 0;          ///< through which the sky looks in
   HierarchyDebug debug;              ///< empty unless asked for
+  SolvedLayers layers;               ///< empty unless asked for
   Settings settings;                 ///< as they were in force for this result
   StageSeconds seconds;              ///< of all rounds
   std::optional<Accuracy> rather{};  ///< there is time for this level instead: nothing else is filled

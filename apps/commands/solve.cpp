@@ -34,9 +34,12 @@ std::filesystem::path sensors_output(const Arguments& arguments) {
   return std::filesystem::path(arguments.output).replace_extension(".sensors.csv");
 }
 
+bool lacks_layers(const Solved& solved) { return solved.settings.layers && solved.layers.light.empty(); }
+
 ExitCode exit_code(const Solved& solved) {
   if (solved.solution.stop == StopReason::interrupted) return kInterrupted;
-  const bool as_asked = solved.solution.stop == StopReason::converged && meets_target(solved) && keeps_laws(solved);
+  const bool as_asked = solved.solution.stop == StopReason::converged && meets_target(solved) && keeps_laws(solved) &&
+                        !lacks_layers(solved);
   return as_asked ? kDone : kAccuracyNotReached;
 }
 
@@ -79,13 +82,21 @@ void check_outputs(const Arguments& arguments, bool has_sensors) {
                      ": there are no sensors to write; give --sensors POINTS.csv, or \"sensors\" in the scene file.");
 }
 
+SensorLayers sensor_layers(const RunReport& report, const Solved& solved) {
+  SensorLayers layers;
+  if (solved.layers.sensor_E.value.empty()) return layers;
+  for (const ShownLayer& layer : report.layers) layers.names.push_back(layer.name);
+  layers.E = solved.layers.sensor_E;
+  return layers;
+}
+
 void write_outputs(const Arguments& arguments, const Scene& scene, const Solved& solved, const RunReport& report,
                    Outputs& outputs) {
   write_result(outputs.open(arguments.output), solved.patches, solved.lightmap, solved.solution,
-               collect_around(scene, solved), report);
+               collect_around(scene, solved), report, solved.layers.light);
   if (solved.sensor_E.size() > 0)
     write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E,
-                  solved.sensor_std_error);
+                  solved.sensor_std_error, sensor_layers(report, solved));
   if (solved.settings.debug) write_debug(outputs, arguments.solve.debug_output, solved.debug, solved.patches.origin);
 }
 
@@ -103,6 +114,11 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   settings.start = console.start();
   if (settings.debug && settings.solve.method != Method::hierarchical) {
     console.fail("--debug-output shows the hierarchical method only, and the method is " +
+                 std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
+    return kWrongUsage;
+  }
+  if (settings.layers && settings.solve.method != Method::hierarchical) {
+    console.fail("--layers is of the hierarchical method only, and the method is " +
                  std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
     return kWrongUsage;
   }
@@ -130,6 +146,7 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   say_why(code, solved, console);
   if (has_sensors && solved.sensor_E.size() == 0)
     console.warn("there was no time for the sensors; " + sensors_output(arguments).string() + " is not written.");
+  if (lacks_layers(solved)) console.warn("there was no time for the layers; the result holds all light together only.");
   report.warnings = console.warnings();  // the result holds them, too
   Outputs outputs;
   write_outputs(arguments, scene, solved, report, outputs);
@@ -181,6 +198,8 @@ void add_solve_command(CLI::App& program, Task& task) {
   add_positive_option(command, "--max-element", s.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
   add_detail_option(command, s.detail);
+  command.add_flag("--layers", s.layers,
+                   "also each group of luminaires and of glowing materials, sky and sun by itself, for clerestory mix");
   command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")
       ->type_name("POINTS.csv");
   command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")

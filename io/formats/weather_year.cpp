@@ -85,7 +85,7 @@ void refuse_missing(const Weather& weather, const Found& missing, int sunny_hour
 }  // namespace
 
 DaylightYear daylight_year(const Weather& weather, const Place& place, double north_deg, double ground_reflectance) {
-  DaylightYear year{weather.file, weather.city, place, {}, 0, weather.warnings};
+  DaylightYear year{weather.file, weather.city, place, north_deg, {}, 0, weather.warnings};
   warn_of_place(weather.file, place, year.warnings);
   const HoursByTime by_time = hours_by_time(weather, year.warnings);
   Found missing, derived;

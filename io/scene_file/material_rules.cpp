@@ -62,6 +62,9 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
   const auto transmittance = object.colour("transmittance", kTransmittance);
   if (transmittance) channels.note(*transmittance, object.place("transmittance"));
   read_emission(object, material, channels);
+  material.group = object.word("group").value_or("");
+  if (!material.group.empty() && !material.emits())
+    warnings.push_back(text(object.place("group"), " is not used: the material gives no light to dim"));
   if (const auto sides = object.number("sides", {.low = 1, .high = 2, .advice = "a surface has one lit side or two"})) {
     if (*sides != 1 && *sides != 2) throw InputError(text(object.place("sides"), " = ", *sides, " is neither 1 nor 2"));
     material.sides = static_cast<int>(*sides);
@@ -153,7 +156,7 @@ std::vector<MaterialRule> read_material_rules(const Json& materials, const std::
   for (const auto& [pattern, value] : materials.items()) {
     const JsonObject object(value, text(file_name, ": materials '", quotable(pattern), "'"),
                             {"type", "reflectance", "transmittance", "sides", "exitance", "luminous_exitance",
-                             "radiance", "luminance", "power", "luminous_flux"},
+                             "radiance", "luminance", "power", "luminous_flux", "group"},
                             ": ");
     rules.push_back({pattern, read_material(object, channels, warnings), {}});
   }

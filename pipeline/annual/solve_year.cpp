@@ -231,7 +231,7 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   warn_about_places(prepared->scene.problem(), shown, sensors, observer);
   KeptTransport kept;
   SolvedPatches solved = solve(prepared->scene.problem(), std::move(prepared->lightmap),
-                               prepared->scene.repairs.max_element, solving.solve, monitor, nullptr, {}, &kept);
+                               prepared->scene.repairs.max_element, solving.solve, monitor, nullptr, {}, {}, &kept);
   out.solved.panes = panes_of(prepared->scene.patches);
   out.solved.settings = solving;
   out.solved.repairs = prepared->scene.repairs;

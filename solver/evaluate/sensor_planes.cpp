@@ -29,7 +29,8 @@ Field mean_over_planes(const SensorPlanes& sensors, const Field& E) {
   Field mean(sensors.sensor_count(), E.channels);
   for (std::size_t s = 0; s < mean.size(); ++s) {
     const std::uint32_t begin = sensors.begin[s], end = sensors.begin[s + 1];
-    for (std::uint32_t i = begin; i < end; ++i) mean.add(s, E[i] / (end - begin));
+    for (std::uint32_t i = begin; i < end; ++i)
+      for (int k = 0; k < E.channels; ++k) mean.at(s, k) += E.at(i, k) * (1.0 / (end - begin));
   }
   return mean;
 }

@@ -26,7 +26,7 @@ struct SensorPlanes {
 /// by up to 1 - x / tan(x) = 0.19 %, x = pi / (2 N), for light from a sky or walls by nothing to speak of.
 SensorPlanes planes_of(std::span<const SensorSet> sets);
 
-/// The mean over each sensor's planes, S x channels, of the irradiance E on all planes.
+/// The mean over each sensor's planes, S x channels (or lanes), of the irradiance E on all planes.
 Field mean_over_planes(const SensorPlanes& sensors, const Field& E);
 
 /// Numbers of the sensors most of whose planes are in `planes`, ascending.

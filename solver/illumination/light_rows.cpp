@@ -93,4 +93,10 @@ Field one_layer(const Field& lanes, std::size_t layer, int channels) {
   return out;
 }
 
+void set_layer(const Field& of_layer, std::size_t layer, Field& lanes) {
+  for (std::size_t i = 0; i < lanes.size(); ++i)
+    for (int c = 0; c < of_layer.channels; ++c)
+      lanes.at(i, static_cast<int>(layer) * of_layer.channels + c) = of_layer.at(i, c);
+}
+
 }  // namespace clerestory

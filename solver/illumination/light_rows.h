@@ -89,7 +89,8 @@ inline std::span<const double> lanes_of(const Field& x, std::size_t i) {
   return std::span(x.value).subspan(i * lanes, lanes);
 }
 
-/// One layer of N x lanes.
+/// One layer of N x lanes, and the reverse.
 Field one_layer(const Field& lanes, std::size_t layer, int channels);
+void set_layer(const Field& of_layer, std::size_t layer, Field& lanes);
 
 }  // namespace clerestory

@@ -334,7 +334,8 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   solution.E = std::move(E);
   if (of_layers) {
     finish_layers(mesh, transport_layers, problem.patches.channels, field);
-    out.layers.B = radiosity_of_layers(mesh, transport_layers, field, out.elements, solution.E, options.layers);
+    out.layers.E_elements = irradiance_of_layers(mesh, transport_layers, field, solution.E);
+    out.layers.B = radiosity_of_layers(out.elements, out.layers.E_elements, options.layers);
     out.layers.E = std::move(field.layers);
     out.layers.energy = std::move(layers.energy);
   }

@@ -7,20 +7,6 @@
 #include "solver/model/assert.h"
 
 namespace clerestory {
-namespace {
-
-/// What surfaces emit in each layer, N x lanes [W/m2].
-Field exitance(const PatchSet& patches, std::span<const Layer> layers) {
-  Field M(patches.patch_count(), static_cast<int>(layers.size()) * patches.channels);
-  for (std::size_t i = 0; i < M.size(); ++i)
-    for (int s = 0; s < static_cast<int>(layers.size()); ++s)
-      for (int c = 0; c < patches.channels; ++c)
-        M.at(i, s * patches.channels + c) = patches.M.at(i, c) * layers[static_cast<std::size_t>(s)].surfaces[c];
-  return M;
-}
-
-}  // namespace
-
 Balanced solve_for(const KeptTransport& kept, std::span<const Layer> layers, double residual, const Monitor& monitor) {
   CLERESTORY_ASSERT(kept.complete, ==, true);
   CLERESTORY_ASSERT(layers.size(), >, 0u);

@@ -65,9 +65,8 @@ void finish_layers(const ElementMesh& mesh, const TransportLayers& transport, in
   }
 }
 
-Field radiosity_of_layers(const ElementMesh& mesh, const TransportLayers& transport, const VertexField& field,
-                          const PatchSet& elements, const Field& E, std::span<const Layer> layers) {
-  const int channels = elements.channels;
+Field irradiance_of_layers(const ElementMesh& mesh, const TransportLayers& transport, const VertexField& field,
+                           const Field& E) {
   const std::vector<std::uint32_t> leaves = mesh.leaves();
   Field E_layers(leaves.size(), field.layers.channels);
   std::size_t i = 0;
@@ -81,17 +80,21 @@ Field radiosity_of_layers(const ElementMesh& mesh, const TransportLayers& transp
         const std::span<const double> delta = lanes_of(field.delta_layers, p);
         for (std::size_t l = 0; l < own.size(); ++l) own[l] += (gain.factor[l] - 1) * delta[l] + gain.evenly[l];
       }
-      if (any_channel_dark(own, channels)) std::ranges::copy(lanes_of(transport.E, j), own.begin());
-      divide_among_layers(E[i], channels, own);
+      if (any_channel_dark(own, E.channels)) std::ranges::copy(lanes_of(transport.E, j), own.begin());
+      divide_among_layers(E[i], E.channels, own);
       ++i;
     }
   }
-  Field B(leaves.size(), field.layers.channels);
+  return E_layers;
+}
+
+Field radiosity_of_layers(const PatchSet& elements, const Field& E, std::span<const Layer> layers) {
+  Field B = exitance(elements, layers);
   for (std::size_t s = 0; s < layers.size(); ++s) {
-    const Field E_of_layer = one_layer(E_layers, s, channels);
-    for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
-      const Spectrum out = elements.M[leaf] * layers[s].surfaces + elements.scattered(E_of_layer, leaf);
-      for (int c = 0; c < channels; ++c) B.at(leaf, static_cast<int>(s) * channels + c) = out[c];
+    const Field E_of_layer = one_layer(E, s, elements.channels);
+    for (std::size_t i = 0; i < B.size(); ++i) {
+      const Spectrum scattered = elements.scattered(E_of_layer, i);
+      for (int c = 0; c < elements.channels; ++c) B.at(i, static_cast<int>(s) * elements.channels + c) += scattered[c];
     }
   }
   return B;

@@ -12,8 +12,11 @@ namespace clerestory {
 /// Layers side by side, lane s * channels + c; their sums are the E and B of the whole light.
 struct LayeredField {
   Field E;                            ///< P x lanes, by point of the lightmap [W/m2]; empty: not asked for, or stopped
+  Field E_elements;                   ///< N x lanes, of the elements [W/m2]
   Field B;                            ///< N x lanes, of the elements, for sensors to gather from [W/m2]
   std::vector<EnergyBalance> energy;  ///< of each layer, as the links balanced it
+
+  bool empty() const { return E.value.empty(); }
 };
 
 /// Layers on the elements as they were for transport.
@@ -27,11 +30,14 @@ struct TransportLayers {
 /// where nothing was gathered, what the elements around receive.
 void finish_layers(const ElementMesh& mesh, const TransportLayers& transport, int channels, VertexField& field);
 
-/// Radiosity of the leaves in each layer, N x lanes: layers share what a leaf receives as they do at its corners, their
-/// delta light scaled to its exact flux; or in what it was a part of for transport, where corners are dark.
+/// Irradiance of the leaves in each layer, N x lanes: layers share what a leaf receives as they do at its corners,
+/// their delta light scaled to its exact flux; or in what it was a part of for transport, where corners are dark.
 ///
-/// elements  the leaves of the mesh, E: all that they receive.
-Field radiosity_of_layers(const ElementMesh& mesh, const TransportLayers& transport, const VertexField& field,
-                          const PatchSet& elements, const Field& E, std::span<const Layer> layers);
+/// E  of the leaves of the mesh: all that they receive.
+Field irradiance_of_layers(const ElementMesh& mesh, const TransportLayers& transport, const VertexField& field,
+                           const Field& E);
+
+/// What leaves the elements in each layer, N x lanes, where they receive E (N x lanes): M + rho E.
+Field radiosity_of_layers(const PatchSet& elements, const Field& E, std::span<const Layer> layers);
 
 }  // namespace clerestory

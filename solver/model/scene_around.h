@@ -13,6 +13,8 @@
 
 #include "solver/model/channels.h"
 #include "solver/model/sensors.h"
+#include "solver/model/solution.h"
+#include "solver/model/units.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
@@ -43,6 +45,18 @@ struct SkyTable {
 struct MeasuredSensors {
   SensorSet set;
   std::vector<double> illuminance;  ///< one a point [lx]
+  Field layers{};                   ///< points x lanes, irradiance by layer [W/m2]; empty: there are none
+};
+
+/// A part of the light that can be dimmed by itself; its light is in arrays of its name (layer_arrays.h).
+struct ShownLayer {
+  std::string name;
+  EnergyBalance energy;  ///< as of the whole light [W]
+  SkyTable sky{};        ///< what it has of the sky; empty: nothing
+  double factor = 1;     ///< by which it was dimmed since it was solved [1]
+
+  /// Flux that it emits; of sky and sun, what arrives on surfaces first [lm].
+  double luminous_flux() const { return kWhiteEfficacy * energy.emitted; }
 };
 
 struct ShownLuminaire {
@@ -57,6 +71,7 @@ struct SceneAround {
   SkyTable sky{};
   std::vector<MeasuredSensors> sensors{};  ///< empty when there was no time for them
   std::vector<ShownLuminaire> luminaires{};
+  std::vector<ShownLayer> layers{};  ///< they sum to the light; empty: it was not solved in layers
   std::vector<std::string> files{};  ///< that the scene was read from, as they were named
 };
 

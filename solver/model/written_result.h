@@ -19,7 +19,11 @@ struct WrittenArray {
   std::vector<float> value;
 };
 
-/// What write_result() wrote.
+/// Name of a layer's own array: "irradiance:desk".
+inline std::string of_layer(const char* array, const std::string& layer) { return array + (":" + layer); }
+
+/// What write_result() wrote. Of each layer of `around` there are arrays irradiance and illuminance of its name on
+/// points and cells; where surfaces glow or pass light on, radiosity too.
 struct WrittenResult {
   std::string file;                                         ///< that it was read from, for messages
   std::vector<Vec3> points;                                 ///< P, scene's frame [m]

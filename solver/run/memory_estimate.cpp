@@ -24,10 +24,16 @@ namespace {
 // (Two threads, one or three channels. The program itself has grown by 5 MiB since.)
 constexpr double kProgram = 32 << 20;
 constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 200, kPoint = 260, kLink = 10;  // [B]
+constexpr double kKeptElement = 300, kElementLane = 64, kPointLane = 48;  // with layers [B]
 
 constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all that was measured
 constexpr double kElementsOfPoint = 2;
 constexpr double kConforming = 2;  // points for one that is asked for: neighbours are halved as well
+
+double of_element(std::size_t lanes) {
+  return kElement + (lanes > 0 ? kKeptElement + kElementLane * static_cast<double>(lanes) : 0);
+}
+double of_point(std::size_t lanes) { return kPoint + kPointLane * static_cast<double>(lanes); }
 
 double links_of_element(const MemoryPlan& p, double elements) {
   const double rays = p.bundle_rays + p.bright_rays;
@@ -39,8 +45,8 @@ double links_of_element(const MemoryPlan& p, double elements) {
 std::size_t predicted_memory(const MemoryCounts& c) {
   const auto n = [](std::size_t count) { return static_cast<double>(count); };
   return static_cast<std::size_t>(kProgram + kInputTriangle * n(c.input_triangles) + kTriangle * n(c.triangles) +
-                                  kSide * n(c.sides) + kElement * n(c.elements) + kPoint * n(c.points) +
-                                  kLink * n(c.links));
+                                  kSide * n(c.sides) + of_element(c.lanes) * n(c.elements) +
+                                  of_point(c.lanes) * n(c.points) + kLink * n(c.links));
 }
 
 std::optional<MemoryPlan> plan_memory(const MemoryCounts& whole, const MemoryPlan& wish, std::size_t limit) {
@@ -54,8 +60,9 @@ std::optional<MemoryPlan> plan_memory(const MemoryCounts& whole, const MemoryPla
       continue;
     }
     // What is left is shared by halves for transport and by points that are shown.
-    const double more_elements = room / 2 / (kSide + kElement + kPoint + links);
-    const double more_points = room / 2 / (kConforming * (kPoint + kElementsOfPoint * kElement));
+    const double more_elements = room / 2 / (kSide + of_element(whole.lanes) + of_point(whole.lanes) + links);
+    const double more_points =
+        room / 2 / (kConforming * (of_point(whole.lanes) + kElementsOfPoint * of_element(whole.lanes)));
     plan.most_elements = std::min(wish.most_elements, whole.sides + static_cast<std::size_t>(more_elements));
     plan.most_points = std::min(wish.most_points, whole.points + static_cast<std::size_t>(more_points));
     return plan;

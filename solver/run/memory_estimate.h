@@ -14,6 +14,7 @@ struct MemoryCounts {
   std::size_t elements = 0;         ///< sides, or what they were halved into
   std::size_t points = 0;           ///< of the lightmap
   std::size_t links = 0;
+  std::size_t lanes = 0;  ///< layers x channels, of layers beside the joint light
 };
 
 /// Peak of the whole process [bytes], without a matrix, by constants fitted to measured peaks (the table is in

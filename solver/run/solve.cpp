@@ -36,19 +36,20 @@ namespace {
 
 Effort effort_of(const SolveOptions& options) { return effort(options.accuracy, options.tighten); }
 
-MemoryCounts whole(const PatchSet& patches, std::size_t points) {
+MemoryCounts whole(const PatchSet& patches, std::size_t points, std::size_t lanes = 0) {
   const std::size_t sides = patches.patch_count();
-  return {.triangles = patches.triangle_count(), .sides = sides, .elements = sides, .points = points};
+  return {.triangles = patches.triangle_count(), .sides = sides, .elements = sides, .points = points, .lanes = lanes};
 }
 
 /// How far the hierarchical method may go: as was asked for, or what a limit of memory leaves of it.
-std::optional<MemoryPlan> memory_plan(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options) {
+std::optional<MemoryPlan> memory_plan(const PatchSet& patches, const VertexLightmap& map, std::size_t lanes,
+                                      const SolveOptions& options) {
   const Effort e = effort_of(options);
   const std::size_t points = map.position.size();
   const MemoryPlan wish{std::min(20 * points + 10'000, e.most_points), HierarchyOptions{}.most_elements, e.bundle_rays,
                         e.bright_rays};
   if (options.memory_limit == 0) return wish;
-  return plan_memory(whole(patches, points), wish, options.memory_limit);
+  return plan_memory(whole(patches, points, lanes), wish, options.memory_limit);
 }
 
 FormFactorOptions matrix_options(const PatchSet& patches, const SolveOptions& options) {
@@ -102,10 +103,12 @@ std::vector<GatherQuality> coarser_than(const SolveOptions& options, GatherQuali
 
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
                                  const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug,
-                                 const AroundSolve& around, KeptTransport* keep) {
+                                 const AroundSolve& around, KeptTransport* keep, std::span<const Layer> layers) {
   require_possible(problem, options);
   const Effort e = effort_of(options);
-  const MemoryPlan plan = memory_plan(problem.patches, map, options).value_or(kLeastPlan);
+  const MemoryPlan plan =
+      memory_plan(problem.patches, map, layers.size() * static_cast<std::size_t>(problem.patches.channels), options)
+          .value_or(kLeastPlan);
   const auto vertices_of = [&](const SolveOptions& level) {
     const Effort of_level = effort_of(level);
     return FieldOptions{.tolerance = of_level.vertex_tolerance,
@@ -137,6 +140,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
   how.vertices = vertices;
   how.later = sensors;
   how.goes_on = goes_on;
+  how.layers = layers;
   how.elements.oracle = options.oracle;
   how.elements.bundle_rays = plan.bundle_rays;
   how.elements.bright_rays = plan.bright_rays;
@@ -148,7 +152,9 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
   how.elements.keep = keep;
   HierarchicalField field = hierarchical_field(problem, std::move(map), how, monitor);
   if (!field.went_on) return {{}, {}, {}, shown, rather};
-  return {std::move(field.elements), std::move(field.lightmap), std::move(field.solution), shown};
+  SolvedPatches solved{std::move(field.elements), std::move(field.lightmap), std::move(field.solution), shown};
+  solved.layers = std::move(field.layers);
+  return solved;
 }
 
 /// The matrix methods know light as it arrives; a luminaire's flux that misses the patches belongs to the balance too.
@@ -167,12 +173,13 @@ std::vector<std::uint32_t> numbers_of(const std::vector<bool>& chosen) {
 /// Irradiance at places by the method of the solution.
 PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, std::size_t count,
                               const PointOf& point_of, const GatherQuality& quality, int paths, Stream stream,
-                              std::string_view stage, const SolveOptions& options, const Monitor& monitor) {
+                              std::string_view stage, const SolveOptions& options, const Monitor& monitor,
+                              const RowLight* layers = nullptr) {
   if (options.method == Method::path)
     return trace_paths_at(Illumination(problem), count, point_of, paths, stream_key(options.seed, stream), stage,
                           monitor);
   return gather_at(gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor), count,
-                   point_of, GatherPattern(quality, options.seed), stage, monitor);
+                   point_of, GatherPattern(quality, options.seed), stage, monitor, layers);
 }
 
 /// The quality of this level, or what a deadline leaves of it.
@@ -198,8 +205,9 @@ double target_triangles(const SolveOptions& options) {
   return std::ldexp(options.method == Method::hierarchical ? e.triangles_to_halve : e.triangles, options.tighten);
 }
 
-bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options) {
-  if (options.method == Method::hierarchical) return memory_plan(patches, map, options).has_value();
+bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, std::size_t lanes,
+                    const SolveOptions& options) {
+  if (options.method == Method::hierarchical) return memory_plan(patches, map, lanes, options).has_value();
   return options.memory_limit == 0 || predicted_memory(whole(patches, map.position.size())) <= options.memory_limit;
 }
 
@@ -282,16 +290,17 @@ SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, 
 }  // namespace
 
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around, KeptTransport* keep) {
+                    const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around,
+                    std::span<const Layer> layers, KeptTransport* keep) {
   UsedTransport used;
   KeptTransport* const keep_links = options.check_laws ? &used.links : keep;
   FormFactorMatrix* const keep_matrix = options.check_laws ? &used.matrix : nullptr;
   constexpr double kShareToCheck = 0.1;  // of the time that is left
   const Monitor solving = options.check_laws ? monitor.within((1 - kShareToCheck) * monitor.seconds_left()) : monitor;
-  SolvedPatches solved =
-      options.method == Method::hierarchical
-          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, solving, debug, around, keep_links)
-          : solve_by_other_method(problem, std::move(map), options, solving, keep_matrix);
+  SolvedPatches solved = options.method == Method::hierarchical
+                             ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, solving, debug,
+                                                  around, keep_links, layers)
+                             : solve_by_other_method(problem, std::move(map), options, solving, keep_matrix);
   if (solved.rather) return solved;
   if (options.check_laws) {
     const PatchSet& elements = solved.elements.patch_count() > 0 ? solved.elements : problem.patches;
@@ -301,12 +310,15 @@ SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_e
   require_sound(solved.solution.E, "irradiance of the elements");
   require_sound(solved.solution.B, "radiosity of the elements");
   require_sound(solved.lightmap.E, "irradiance at the points");
+  require_sound(solved.layers.E, "irradiance of the layers at the points");
+  require_sound(solved.layers.E_elements, "irradiance of the layers on elements");
+  require_sound(solved.layers.B, "radiosity of the layers");
   return solved;
 }
 
 PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& solution,
                                       std::span<const SensorPoint> points, const SolveOptions& options,
-                                      const Monitor& monitor) {
+                                      const Monitor& monitor, const RowLight* layers) {
   const PointOf point_of = sensor_points(points, problem.patches.origin, problem.rays);
   const Effort e = effort_of(options);
   SolveOptions finest = options;
@@ -314,7 +326,7 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
   PointIrradiance at_points =
       irradiance_at(problem, solution, points.size(), point_of,
                     quality_until(monitor, problem, solution, {points.size(), point_of}, finest, &Effort::sensors),
-                    e.paths_of_sensor, kPathsOfSensor, "sensors", options, monitor);
+                    e.paths_of_sensor, kPathsOfSensor, "sensors", options, monitor, layers);
   if (!at_points.complete()) {
     // Paths have no bound on their length; looking at the elements has one, and serves any method when time is up.
     Monitor patient;
@@ -322,9 +334,10 @@ PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& so
     if (points.size() > kQuickSensors) patient.deadline = std::chrono::steady_clock::now() + kTimeForSensors;
     const GatherPattern rough(effort(Accuracy::draft, options.tighten).sensors, options.seed);
     at_points = gather_at(gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, patient),
-                          points.size(), point_of, rough, "sensors", patient);
+                          points.size(), point_of, rough, "sensors", patient, layers);
   }
   require_sound(at_points.E, "irradiance at the sensors");
+  require_sound(at_points.layers, "irradiance of the layers at the sensors");
   return at_points;
 }
 

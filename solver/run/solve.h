@@ -9,6 +9,7 @@
 #include "solver/illumination/problem.h"
 #include "solver/methods/form_factor_matrix.h"
 #include "solver/methods/kept_transport.h"
+#include "solver/methods/layered_field.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/laws.h"
 #include "solver/model/method.h"
@@ -46,7 +47,9 @@ struct SolveOptions {
 double target_triangles(const SolveOptions& options);
 
 /// Whether a limit of memory leaves room for a solve on these patches, matrices aside.
-bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, const SolveOptions& options);
+///
+/// lanes  layers x channels of layers that are asked for; 0: none are.
+bool has_memory_for(const PatchSet& patches, const VertexLightmap& map, std::size_t lanes, const SolveOptions& options);
 
 struct SolvedPatches {
   PatchSet elements;        ///< leaf elements, each on a triangle of its own; empty: they are the problem's patches
@@ -56,6 +59,7 @@ struct SolvedPatches {
       Accuracy::draft;  ///< level of the gathers at vertices: with a deadline finer than the elements', perhaps
   std::optional<Accuracy> rather{};  ///< SolveOptions::at_most; if so, all else is empty
   std::vector<LawCheck> laws{};      ///< by check_laws.h; empty unless asked for
+  LayeredField layers{};             ///< empty unless asked for, and where there was no time for them
 };
 
 /// What a solve with a deadline must know of what comes before and after it.
@@ -73,12 +77,13 @@ struct AroundSolve {
 /// throws        InputError when the method needs more memory than there is, or cannot do what the scene has;
 ///               std::logic_error when a value comes out negative or as no number: nobody shall see it.
 /// around        looked at where there is a deadline.
+/// layers        of the hierarchical method: parts that sum to the light of the problem; all else keeps its bits.
 /// Stops early when the monitor says so, and returns what is solved so far, marked in Solution::stop; vertices that
 /// were not reached then show the mean of their elements. With a deadline fewer rays are sent rather than that; where
 /// that was so, Solution::stop tells. Threads: same bits for any thread count.
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
                     const Monitor& monitor = {}, HierarchyDebug* debug = nullptr, const AroundSolve& around = {},
-                    KeptTransport* keep = nullptr);
+                    std::span<const Layer> layers = {}, KeptTransport* keep = nullptr);
 
 /// The first half of that for any method but the hierarchical one, which makes elements of its own: radiosity and
 /// irradiance of every patch.
@@ -92,8 +97,9 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
 /// complete.
 ///
 /// problem  with the elements that the solution belongs to. points: in the scene's frame.
+/// layers   null, or those that sum to its light, with their radiosity: PointIrradiance::layers, but by paths.
 PointIrradiance irradiance_at_sensors(const Problem& problem, const Solution& solution,
                                       std::span<const SensorPoint> points, const SolveOptions& options,
-                                      const Monitor& monitor = {});
+                                      const Monitor& monitor = {}, const RowLight* layers = nullptr);
 
 }  // namespace clerestory

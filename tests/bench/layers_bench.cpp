@@ -116,7 +116,8 @@ Layer all_of(std::span<const Layer> layers) {
   for (const Layer& layer : layers) {
     all.lights.resize(std::max(all.lights.size(), layer.lights.size()));
     for (std::size_t k = 0; k < layer.lights.size(); ++k) all.lights[k] += layer.lights[k];
-    all.surfaces += layer.surfaces;
+    all.materials.resize(std::max(all.materials.size(), layer.materials.size()));
+    for (std::size_t m = 0; m < layer.materials.size(); ++m) all.materials[m] += layer.materials[m];
     if (layer.sky) all.sky = layer.sky;
   }
   return all;
@@ -127,7 +128,7 @@ void eight_groups(const std::string& scenes) {
   const std::size_t count = scene.lights.luminaires.size();
   for (std::size_t k = 0; k < count; ++k) scene.lights.luminaires[k].group = std::to_string(8 * k / count);
   const Start start(std::move(scene));
-  const std::vector<Layer> layers = layers_by_group(start.prepared.scene.lights, false);
+  const std::vector<Layer> layers = layers_by_group(start.prepared.scene.lights, start.problem().patches);
   const Layer all = all_of(layers);
   row("layers: groups of the classroom", static_cast<double>(layers.size()), "1", "8");
 
@@ -195,7 +196,7 @@ void replaced_sky(const std::string& scenes) {
   HierarchyOptions keeping = start.options.elements;
   keeping.keep = &kept;
   const HierarchicalSolution overcast = hierarchical(start.problem(), mesh, keeping);
-  const std::vector<Layer> replaced = {all_of(layers_by_group(other, true))};
+  const std::vector<Layer> replaced = {all_of(layers_by_group(other, start.problem().patches))};
 
   // The fresh solve: on the same elements, by rays that know the other sky and fall elsewhere.
   const auto solve_fresh = [&](std::uint64_t seed) {

@@ -55,8 +55,8 @@ TEST_P(KeptTransportOf, ManyLightsSumsToTheJointSolve) {
   ASSERT_GT(room.lights.luminaires.size(), 6u) << "the mirror shows images";
   const Kept kept = keep(room.problem, room.map);
   ASSERT_TRUE(kept.transport.complete);
-  const std::vector<Layer> layers = layers_by_group(room.lights, true);
-  ASSERT_EQ(layers.size(), 5u);
+  const std::vector<Layer> layers = layers_by_group(room.lights, room.patches);
+  ASSERT_EQ(layers.size(), 6u);
   const Balanced s = solve_for(kept.transport, layers, kResidual);
   expect_near(sum_of_layers(s.E, GetParam()), kept.joint.solution.E, 1e-6);
   expect_near(sum_of_layers(s.B, GetParam()), kept.joint.solution.B, 1e-6);
@@ -74,7 +74,7 @@ TEST_P(KeptTransportOf, ManyLightsGivesTheSameBitsForAnyNumberOfThreads) {
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
     const Kept kept = keep(room.problem, room.map);
-    E.push_back(solve_for(kept.transport, layers_by_group(room.lights, true)).E);
+    E.push_back(solve_for(kept.transport, layers_by_group(room.lights, room.patches)).E);
   }
   set_thread_count(0);
   EXPECT_EQ(E[0].value, E[1].value);
@@ -107,7 +107,7 @@ TEST_P(KeptTransportOf, ManyLightsTakesAnotherSkyAsAFreshSolveDoes) {
   other.sky->horizontal_irradiance = GetParam() == 1 ? Spectrum(200) : Spectrum(200, 150, 100);
   Layer light;
   light.lights.assign(other.luminaires.size() + other.suns.size(), Spectrum(1.0));
-  light.surfaces = Spectrum(1.0);
+  light.materials.assign(room.patches.materials.size(), Spectrum(1.0));
   light.sky = std::make_shared<const SkyRadiance>(other);
   const Balanced replaced = solve_for(kept.transport, {&light, 1});
   // Fresh solves halve other elements: fluxes are compared. Their own seeds tell how far these may lie apart.
@@ -162,7 +162,8 @@ TEST(KeptTransport, OfAFurnaceStaysAFurnace) {
   const Lights none;
   const Kept kept = keep({patches, rays, none}, test::unjoined_lightmap(patches));
   std::vector<Layer> layers(9);
-  for (std::size_t s = 0; s < layers.size(); ++s) layers[s].surfaces = Spectrum(static_cast<double>(s));
+  for (std::size_t s = 0; s < layers.size(); ++s)
+    layers[s].materials.assign(patches.materials.size(), Spectrum(static_cast<double>(s)));
   const Balanced s = solve_for(kept.transport, layers);
   for (std::size_t i = 0; i < s.B.size(); ++i)
     for (int l = 0; l < s.B.channels; ++l) EXPECT_NEAR(s.B.at(i, l), 6.0 * l, 6e-5 * l);  // B = M / (1 - rho)

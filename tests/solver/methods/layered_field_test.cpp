@@ -49,7 +49,7 @@ class LayeredFieldOf : public testing::TestWithParam<int> {};
 
 TEST_P(LayeredFieldOf, ManyLightsSumsToTheJointFieldWhichKeepsItsBits) {
   const test::ManyLights room(GetParam());
-  const std::vector<Layer> layers = layers_by_group(room.lights, true);
+  const std::vector<Layer> layers = layers_by_group(room.lights, room.patches);
   const HierarchicalField joint = hierarchical_field(room.problem, room.map, options_for({}));
   const HierarchicalField layered = hierarchical_field(room.problem, room.map, options_for(layers));
   EXPECT_EQ(layered.lightmap.E.value, joint.lightmap.E.value);
@@ -57,6 +57,7 @@ TEST_P(LayeredFieldOf, ManyLightsSumsToTheJointFieldWhichKeepsItsBits) {
   EXPECT_EQ(layered.solution.rays, joint.solution.rays);
   EXPECT_TRUE(joint.layers.E.value.empty());
   expect_sum(layered.layers.E, layered.lightmap.E);
+  expect_sum(layered.layers.E_elements, layered.solution.E);
   expect_sum(layered.layers.B, layered.solution.B);
   const Problem on_elements{layered.elements, room.rays, room.lights};
   const RowLight light(layers, GetParam(), layered.layers.B);
@@ -67,7 +68,7 @@ TEST_P(LayeredFieldOf, ManyLightsSumsToTheJointFieldWhichKeepsItsBits) {
 
 TEST_P(LayeredFieldOf, ManyLightsGivesEachGroupWhatItGivesAlone) {
   const test::ManyLights room(GetParam());
-  const std::vector<Layer> layers = layers_by_group(room.lights, true);
+  const std::vector<Layer> layers = layers_by_group(room.lights, room.patches);
   const HierarchicalField layered = hierarchical_field(room.problem, room.map, options_for(layers));
   const Problem on_elements{layered.elements, room.rays, room.lights};
   const RowLight light(layers, GetParam(), layered.layers.B);
@@ -89,7 +90,7 @@ TEST_P(LayeredFieldOf, ManyLightsGivesEachGroupWhatItGivesAlone) {
 
 TEST_P(LayeredFieldOf, ManyLightsGivesTheSameBitsForAnyNumberOfThreads) {
   const test::ManyLights room(GetParam());
-  const std::vector<Layer> layers = layers_by_group(room.lights, true);
+  const std::vector<Layer> layers = layers_by_group(room.lights, room.patches);
   std::vector<LayeredField> found;
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
@@ -115,7 +116,7 @@ TEST_P(LayeredFieldOf, RowsThatAreKeptTakeAnotherSkyAsAFreshGatherDoes) {
       gather_rows_at(gather_illumination(on_elements, joint.solution.B), kSensors.size(), points, pattern);
   Layer whole;
   whole.lights.assign(room.lights.luminaires.size() + room.lights.suns.size(), Spectrum(1.0));
-  whole.surfaces = Spectrum(1.0);
+  whole.materials.assign(room.patches.materials.size(), Spectrum(1.0));
   Layer other = whole;
   whole.sky = std::make_shared<const SkyRadiance>(room.lights);
   Lights even = room.lights;

@@ -127,7 +127,7 @@ void compare_north(const JsonObject& root, const std::string& file_name, Scene& 
 
 }  // namespace
 
-Scene read_scene_file(const std::filesystem::path& file) {
+Scene read_scene_file(const std::filesystem::path& file, const ReadOptions& options) {
   const std::string name = short_name(file);
   const Json json = parse_json<Json>(read_input_file(file, kMaxSceneFileBytes), name);
   const JsonObject root = root_of_scene(json, name);
@@ -144,7 +144,10 @@ Scene read_scene_file(const std::filesystem::path& file) {
   PhotometryFiles photometry;
   read_luminaire_entries(root, name, folder, photometry, channels, scene);
   std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, photometry, channels, scene);
-  scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
+  if (options.for_a_year)
+    scene.ground_reflectance = read_ground(root, name);
+  else
+    scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   const PlaceAndTime at = read_place_and_time(root, name);
   scene.place = at.place;
   scene.north_deg = at.north_deg;

@@ -71,16 +71,23 @@ struct ChosenHour {
   std::optional<Daylight::Hour> weather;  ///< which hour of which file
 };
 
+std::optional<JsonObject> sky_object(const JsonObject& root, const std::string& file_name) {
+  if (!root.has("sky")) return {};
+  return JsonObject(root.at("sky"), file_name + ": sky",
+                    {"model", "horizontal_illuminance", "type", "ground_reflectance", "direct_normal",
+                     "diffuse_horizontal", "dew_point", "precipitable_water", "weather", "day_of_year", "hour", "image",
+                     "rotation"});
+}
+
+double ground_of(const JsonObject& sky) {
+  constexpr Range kGround{.low = 0, .high = 1, .advice = "the ground cannot reflect more than it receives"};
+  return sky.number("ground_reflectance", kGround).value_or(Sky{}.ground_reflectance);
+}
+
 SkyEntries read_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels) {
   SkyEntries read;
   read.where_and_when = read_place_and_time(root, file_name);
-  if (root.has("sky")) {
-    read.sky.emplace(root.at("sky"), file_name + ": sky",
-                     std::initializer_list<std::string_view>{"model", "horizontal_illuminance", "type",
-                                                             "ground_reflectance", "direct_normal",
-                                                             "diffuse_horizontal", "dew_point", "precipitable_water",
-                                                             "weather", "day_of_year", "hour", "image", "rotation"});
-  }
+  read.sky = sky_object(root, file_name);
   if (!root.has("sun")) return read;
   if (root.at("sun") == false) {
     read.no_sun = true;
@@ -319,8 +326,7 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
     check_sky(*object);
     sky.model = model_of(*object, warnings);
     warn_of_idle_keys(*object, sky.model, warnings);
-    constexpr Range kGround{.low = 0, .high = 1, .advice = "the ground cannot reflect more than it receives"};
-    sky.ground_reflectance = object->number("ground_reflectance", kGround).value_or(sky.ground_reflectance);
+    sky.ground_reflectance = ground_of(*object);
     if (object->has("weather"))
       hour = hour_of_weather(root, *object, folder, at, warnings);
     else if (sky.model == SkyModel::perez)
@@ -423,6 +429,11 @@ Sky sky_of_option(std::string_view option) {
   }
   sky.horizontal_irradiance = Spectrum(lux / kWhiteEfficacy);
   return sky;
+}
+
+double read_ground(const JsonObject& root, const std::string& file_name) {
+  const std::optional<JsonObject> sky = sky_object(root, file_name);
+  return sky ? ground_of(*sky) : Sky{}.ground_reflectance;
 }
 
 }  // namespace clerestory

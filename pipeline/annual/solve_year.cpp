@@ -106,7 +106,7 @@ class PointYears {
 
   /// closed_in   which blinds decide at a point: null, or the hours' sets of its room.
   void run(std::span<const PlacesOfPoint> points, std::size_t begin, std::size_t end, const GatherPattern& pattern,
-           const std::vector<const AreaOfYear*>& room_of, bool of_sensors, const TakeSeries& take,
+           const std::vector<const YearArea*>& room_of, bool of_sensors, const TakeSeries& take,
            std::vector<PointYear>& out) {
     const std::size_t H = states_.front()->year().hours;
     for (std::size_t first = begin; first < end; first += kBlock * kBlocksAtOnce) {
@@ -132,7 +132,7 @@ class PointYears {
 
  private:
   BlockSeries series_of_block(std::span<const PlacesOfPoint> points, const GatherPattern& pattern,
-                              std::span<const AreaOfYear* const> rooms) const {
+                              std::span<const YearArea* const> rooms) const {
     const std::size_t H = states_.front()->year().hours, n = points.size() * H;
     BlockSeries s{std::vector<float>(n), std::vector<float>(n), {}};
     states_.front()->year_at(points, pattern, s.total, s.direct);
@@ -166,9 +166,9 @@ class PointYears {
 };
 
 /// Which room decides on the blinds, by point.
-std::vector<const AreaOfYear*> rooms_of_points(std::size_t points, const std::vector<AreaOfYear>& areas,
+std::vector<const YearArea*> rooms_of_points(std::size_t points, const std::vector<YearArea>& areas,
                                                const std::vector<std::uint32_t>& area_of_point) {
-  std::vector<const AreaOfYear*> of(points, nullptr);
+  std::vector<const YearArea*> of(points, nullptr);
   for (std::size_t p = 0; p < points && !area_of_point.empty(); ++p)
     if (area_of_point[p] < areas.size()) of[p] = &areas[area_of_point[p]];
   return of;

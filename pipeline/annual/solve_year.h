@@ -37,7 +37,7 @@ struct YearSeries {
 using TakeSeries = std::function<void(const YearSeries&)>;
 
 /// A room (what faces up in it) or a grid of sensors.
-struct AreaOfYear {
+struct YearArea {
   std::string name;
   std::vector<std::size_t> points;   ///< of the lightmap, or sensors
   std::vector<double> weight;        ///< area that each stands for [m2]; of sensors 1, where it is not known
@@ -52,7 +52,7 @@ struct YearSolved {
   std::vector<int> hours;  ///< H, of the year
   std::size_t sky_parts = 0, sun_nodes = 0;
   std::vector<PointYear> of_points, of_sensors;  ///< those of the part that was asked for; others have no hours
-  std::vector<AreaOfYear> rooms, grids;
+  std::vector<YearArea> rooms, grids;
   YearError error;                                          ///< that figures' low and high are of
   std::optional<ErrorFigures> error_points, error_sensors;  ///< of illuminances in single hours
 };

@@ -15,7 +15,8 @@ namespace {
 
 /// Radiosity of the transport's elements under the sky that it was found with.
 Field radiosity(const KeptTransport& kept, const Lights& lights) {
-  const Layer sky{.name = {}, .lights = {}, .sky = std::make_shared<const SkyRadiance>(lights)};
+  Layer sky;
+  sky.sky = std::make_shared<const SkyRadiance>(lights);
   return solve_for(kept, {&sky, 1}).B;
 }
 

@@ -17,7 +17,7 @@ namespace {
 const double kFacesUp = std::cos(25 * std::numbers::pi / 180);
 
 void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::span<const PlacesOfPoint> points,
-                const YearRules& rules, AreaOfYear& area) {
+                const YearRules& rules, YearArea& area) {
   const std::size_t H = states.front()->year().hours, n = area.points.size();
   std::vector<PlacesOfPoint> own;
   for (const std::size_t p : area.points) own.push_back(points[p]);
@@ -45,22 +45,22 @@ void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::sp
     }
     if (!any) continue;
     area.blinds[h] = close_blinds(groups, steady);
-    if (rules.occupied[h] > 0) area.closed.add(area.blinds[h]);
+    if (rules.occupied[h] > 0) add_hour(area.blinds[h], area.closed);
   }
 }
 
 }  // namespace
 
-std::vector<AreaOfYear> rooms_facing_up(const PatchSet& patches, const VertexLightmap& map) {
+std::vector<YearArea> rooms_facing_up(const PatchSet& patches, const VertexLightmap& map) {
   const std::vector<bool> inner = inner_rooms(patches.rooms);
   std::vector<std::map<std::size_t, double>> weight(patches.rooms.size());
   for (std::size_t i = 0; i < patches.patch_count() && !patches.room.empty(); ++i)
     if (inner[patches.room[i]] && patches.normal[i].z >= kFacesUp)
       for (const std::uint32_t p : map.corners[i]) weight[patches.room[i]][p] += patches.area[i] / 3;
-  std::vector<AreaOfYear> rooms;
+  std::vector<YearArea> rooms;
   for (std::size_t r = 0; r < weight.size(); ++r) {
     if (weight[r].empty()) continue;
-    AreaOfYear& room = rooms.emplace_back();
+    YearArea& room = rooms.emplace_back();
     room.name = patches.rooms[r];
     for (const auto& [point, area] : weight[r]) room.points.push_back(point), room.weight.push_back(area);
   }
@@ -68,21 +68,21 @@ std::vector<AreaOfYear> rooms_facing_up(const PatchSet& patches, const VertexLig
 }
 
 std::vector<std::uint32_t> room_of_points(const PatchSet& patches, const VertexLightmap& map,
-                                          const std::vector<AreaOfYear>& rooms) {
+                                          const std::vector<YearArea>& rooms) {
   std::vector<std::uint32_t> of(map.position.size(), static_cast<std::uint32_t>(rooms.size()));
   if (patches.room.empty()) return of;
   for (std::size_t p = 0; p < of.size(); ++p) {
     const std::string& name = patches.rooms[patches.room[map.patch_of_point[p]]];
-    of[p] = static_cast<std::uint32_t>(std::ranges::find(rooms, name, &AreaOfYear::name) - rooms.begin());
+    of[p] = static_cast<std::uint32_t>(std::ranges::find(rooms, name, &YearArea::name) - rooms.begin());
   }
   return of;
 }
 
-std::vector<AreaOfYear> grids_of(const std::vector<SensorSet>& sets) {
-  std::vector<AreaOfYear> grids;
+std::vector<YearArea> grids_of(const std::vector<SensorSet>& sets) {
+  std::vector<YearArea> grids;
   std::size_t next = 0;
   for (const SensorSet& set : sets) {
-    AreaOfYear& grid = grids.emplace_back();
+    YearArea& grid = grids.emplace_back();
     grid.name = set.name;
     for (std::size_t k = 0; k < set.points.size(); ++k) {
       grid.points.push_back(next++);
@@ -99,7 +99,7 @@ std::vector<std::uint32_t> set_of_sensors(const std::vector<SensorSet>& sets) {
 }
 
 void operate_blinds(const std::vector<std::unique_ptr<WindowState>>& states, std::span<const PlacesOfPoint> points,
-                    const YearRules& rules, const Monitor& monitor, std::vector<AreaOfYear>& areas) {
+                    const YearRules& rules, const Monitor& monitor, std::vector<YearArea>& areas) {
   for (std::size_t k = 0; k < areas.size(); ++k) {
     monitor.report("blinds", static_cast<double>(k) / static_cast<double>(areas.size()));
     operate_in(states, points, rules, areas[k]);
@@ -107,8 +107,8 @@ void operate_blinds(const std::vector<std::unique_ptr<WindowState>>& states, std
 }
 
 void add_up(YearSolved& year) {
-  const auto add = [&](std::vector<AreaOfYear>& areas, const std::vector<PointYear>& of) {
-    for (AreaOfYear& area : areas) {
+  const auto add = [&](std::vector<YearArea>& areas, const std::vector<PointYear>& of) {
+    for (YearArea& area : areas) {
       std::vector<PointYear> points;
       for (const std::size_t p : area.points) points.push_back(of[p]);
       if (!points.empty()) area.figures = area_year(points, area.weight, year.rules);

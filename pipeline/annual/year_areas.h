@@ -12,19 +12,19 @@ namespace clerestory {
 
 /// Rooms that people use, by what faces up in them within 25 degrees, floors and tables, each point with the area
 /// around it; those without any are left out.
-std::vector<AreaOfYear> rooms_facing_up(const PatchSet& patches, const VertexLightmap& map);
+std::vector<YearArea> rooms_facing_up(const PatchSet& patches, const VertexLightmap& map);
 /// Number among `rooms` of each point's room; rooms.size(): it is in none of them.
 std::vector<std::uint32_t> room_of_points(const PatchSet& patches, const VertexLightmap& map,
-                                          const std::vector<AreaOfYear>& rooms);
+                                          const std::vector<YearArea>& rooms);
 
 /// One for each set of sensors.
-std::vector<AreaOfYear> grids_of(const std::vector<SensorSet>& sets);
+std::vector<YearArea> grids_of(const std::vector<SensorSet>& sets);
 /// Number of the set of each sensor.
 std::vector<std::uint32_t> set_of_sensors(const std::vector<SensorSet>& sets);
 
-/// Fills AreaOfYear::blinds and closed.
+/// Fills YearArea::blinds and closed.
 void operate_blinds(const std::vector<std::unique_ptr<WindowState>>& states, std::span<const PlacesOfPoint> points,
-                    const YearRules& rules, const Monitor& monitor, std::vector<AreaOfYear>& areas);
+                    const YearRules& rules, const Monitor& monitor, std::vector<YearArea>& areas);
 
 /// Figures of all rooms and grids.
 void add_up(YearSolved& year);

@@ -83,6 +83,7 @@ struct Scene {
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< names, by SurfaceId
   LightSpec lights;
+  double ground_reflectance = 0.2;   ///< of the virtual ground, where the scene was read for a year [1]
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
   std::optional<Place> place;        ///< on earth, as the scene file says it
   double north_deg = 0;              ///< of the scene's north, clockwise from +y, as the scene file says it

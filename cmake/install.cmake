@@ -16,7 +16,7 @@ endforeach()
 # The warnings go along because static libraries name all they were linked with; they bind nobody else.
 install(TARGETS ${libraries} clerestory_warnings EXPORT ClerestoryTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS clerestory_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS clerestory_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clerestory)
+install(TARGETS clerestory_images clerestory_hdf5 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clerestory)
 # What reads IFC, with the licence of web-ifc; nothing when it was not there to build with.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clerestory/ifc
   DESTINATION ${CMAKE_INSTALL_DATADIR}/clerestory OPTIONAL)

@@ -70,9 +70,6 @@ double area_share(std::span<const PointYear> points, std::span<const double> wei
   return percent(sum, area);
 }
 
-/// Sums of areas are rounded: twenty times a twentieth is the whole.
-bool reaches(double share, double least) { return share >= least - 1e-9; }
-
 }  // namespace
 
 YearRules year_rules(std::span<const int> hours, std::span<const double> diffuse,
@@ -184,12 +181,10 @@ AreaYear area_year(std::span<const PointYear> points, std::span<const double> we
   for (std::size_t level = 0; level < 3; ++level) {
     year.target_share[level] = has_for_half(kTarget[level]);
     year.minimum_share[level] = has_for_half(kMinimum[level]);
-    if (reaches(year.target_share[level], 50) && reaches(year.minimum_share[level], 95))
+    if (reaches_share(year.target_share[level], 50) && reaches_share(year.minimum_share[level], 95))
       year.level = static_cast<En17037Level>(level + 1);
   }
   return year;
 }
-
-int leed_points(double sDA) { return reaches(sDA, 75) ? 3 : reaches(sDA, 55) ? 2 : reaches(sDA, 40) ? 1 : 0; }
 
 }  // namespace clerestory

@@ -71,7 +71,4 @@ std::vector<YearFigure> year_figures(const YearRules& rules);
 /// weight  area that each point stands for, >= 0; their sum > 0.
 AreaYear area_year(std::span<const PointYear> points, std::span<const double> weight, const YearRules& rules);
 
-/// Points that LEED v4.1 gives for an sDA 300/50 %: 1 from 40 % on, 2 from 55, 3 from 75.
-int leed_points(double sDA);
-
 }  // namespace clerestory

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include <hdf5.h>
 
@@ -11,19 +12,26 @@ using clerestory::Hdf5Id;
 
 std::string why;  ///< of the last failure; HDF5 is used by one thread at a time
 
-herr_t note_reason(unsigned, const H5E_error2_t* error, void*) {
-  why = error->desc;  // the last one that is told is where it began
+/// What is told of an error by the function that met it: the last of the stack.
+herr_t note_reason(unsigned depth, const H5E_error2_t* error, void*) {
+  if (depth == 0) why = error->desc;
   return 0;
+}
+
+/// "file write failed: time = ..., errno = 28, error message = 'No space left on device', buf = ..." is for those who
+/// wrote it; what the system said is for all.
+std::string what_the_system_said(const std::string& reason) {
+  constexpr std::string_view kMark = "error message = '";
+  const std::size_t mark = reason.find(kMark);
+  if (mark == reason.npos) return reason;
+  const std::size_t begin = mark + kMark.size();
+  return reason.substr(begin, reason.find('\'', begin) - begin);
 }
 
 const char* failure() {
   why = "no reason is given";
-  H5Ewalk2(
-      H5E_DEFAULT, H5E_WALK_UPWARD,
-      [](unsigned depth, const H5E_error2_t* error, void* data) -> herr_t {
-        return depth == 0 ? note_reason(depth, error, data) : 0;
-      },
-      nullptr);
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_reason, nullptr);
+  why = what_the_system_said(why);
   return why.c_str();
 }
 

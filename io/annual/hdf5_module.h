@@ -1,6 +1,6 @@
 #pragma once
 // What the module that HDF5 is behind offers: plain functions, none of which throws. Each says why it failed, as HDF5
-// puts it, or nothing.
+// or the system puts it, or nothing.
 
 #include <cstddef>
 #include <cstdint>

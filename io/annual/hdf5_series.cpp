@@ -57,7 +57,7 @@ class Hdf5Series : public HourSeries {
   };
 
   void check(const char* why) const {
-    if (why) file_.refuse(text("HDF5 says '", quotable(why, 200), "'; is the disk full?"));
+    if (why) file_.refuse(text("HDF5 says '", quotable(why, 200), "'"));
   }
   const char* close() {
     const char* why = nullptr;

@@ -42,8 +42,8 @@ void add_sums(const float* x, std::size_t n, float T, PointYear& year) {
   year.cDA += (up_to_T[0] + up_to_T[1]) + (up_to_T[2] + up_to_T[3]);
 }
 
-/// What an illuminance must read at least so that (1 + change) of it is `lux`.
-float read_for(double lux, double change) { return static_cast<float>(lux / (1 + change)); }
+/// What an illuminance must read at least so that (1 + change) of it is `lux`; no illuminance where nothing is left.
+float read_for(double lux, double change) { return static_cast<float>(lux / std::max(0.0, 1 + change)); }
 
 template <typename Count>
 void add(Count& sum, int hours) {

@@ -35,6 +35,7 @@ install(FILES pipeline/collect_around.h pipeline/observer.h pipeline/settings.h 
 install(FILES meshing/build_patches.h meshing/make_lightmap.h DESTINATION ${include_dir}/meshing)
 install(FILES io/atomic_file.h io/read_scene.h io/read_sensors.h io/write_result.h io/write_sensors.h io/run_report.h
   DESTINATION ${include_dir}/io)
+install(FILES io/formats/epw.h io/formats/weather_year.h DESTINATION ${include_dir}/io/formats)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Clerestory)
 install(EXPORT ClerestoryTargets NAMESPACE clerestory:: DESTINATION ${package_dir})

@@ -1,6 +1,8 @@
 #include "io/formats/weather_year.h"
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "io/formats/weather_light.h"
@@ -73,6 +75,26 @@ struct Found {
   }
 };
 
+/// Great-circle distance [km].
+double distance_km(const Place& a, const Place& b) {
+  constexpr double kDegree = std::numbers::pi / 180, kEarthRadius = 6371;
+  const auto direction = [](const Place& p) {
+    const double latitude = p.latitude_deg * kDegree, longitude = p.longitude_deg * kDegree;
+    return Vec3{std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude)};
+  };
+  const Vec3 u = direction(a), v = direction(b);
+  return kEarthRadius * std::atan2(length(cross(u, v)), dot(u, v));
+}
+
+/// Weather of elsewhere is taken all the same: there may be none nearer.
+void warn_of_distance(const Weather& weather, const Place& place, std::vector<std::string>& warnings) {
+  constexpr double kFar = 100;  // [km]
+  const double km = distance_km(weather.place, place);
+  if (km <= kFar) return;
+  warnings.push_back(text(weather.file, ": is of ", weather.city, ", ", std::round(km),
+                          " km from the scene's location, where the sun is computed for"));
+}
+
 void refuse_missing(const Weather& weather, const Found& missing, int sunny_hours) {
   if (missing.count == sunny_hours || (sunny_hours > 0 && missing.count > kMostMissing * sunny_hours)) {
     throw InputError(text(
@@ -87,6 +109,7 @@ void refuse_missing(const Weather& weather, const Found& missing, int sunny_hour
 DaylightYear daylight_year(const Weather& weather, const Place& place, double north_deg, double ground_reflectance) {
   DaylightYear year{weather.file, weather.city, place, north_deg, {}, 0, weather.warnings};
   warn_of_place(weather.file, place, year.warnings);
+  warn_of_distance(weather, place, year.warnings);
   const HoursByTime by_time = hours_by_time(weather, year.warnings);
   Found missing, derived;
   int sunny_hours = 0;

@@ -42,8 +42,8 @@ void add_sums(const float* x, std::size_t n, float T, PointYear& year) {
   year.cDA += (up_to_T[0] + up_to_T[1]) + (up_to_T[2] + up_to_T[3]);
 }
 
-/// What an illuminance must read at least so that (1 + change) of it is `lux`.
-float read_for(double lux, double change) { return static_cast<float>(lux / (1 + change)); }
+/// What an illuminance must read at least so that (1 + change) of it is `lux`; no illuminance where nothing is left.
+float read_for(double lux, double change) { return static_cast<float>(lux / std::max(0.0, 1 + change)); }
 
 template <typename Count>
 void add(Count& sum, int hours) {
@@ -69,9 +69,6 @@ double area_share(std::span<const PointYear> points, std::span<const double> wei
     if (has(points[i])) sum += weight[i];
   return percent(sum, area);
 }
-
-/// Sums of areas are rounded: twenty times a twentieth is the whole.
-bool reaches(double share, double least) { return share >= least - 1e-9; }
 
 }  // namespace
 
@@ -184,12 +181,10 @@ AreaYear area_year(std::span<const PointYear> points, std::span<const double> we
   for (std::size_t level = 0; level < 3; ++level) {
     year.target_share[level] = has_for_half(kTarget[level]);
     year.minimum_share[level] = has_for_half(kMinimum[level]);
-    if (reaches(year.target_share[level], 50) && reaches(year.minimum_share[level], 95))
+    if (reaches_share(year.target_share[level], 50) && reaches_share(year.minimum_share[level], 95))
       year.level = static_cast<En17037Level>(level + 1);
   }
   return year;
 }
-
-int leed_points(double sDA) { return reaches(sDA, 75) ? 3 : reaches(sDA, 55) ? 2 : reaches(sDA, 40) ? 1 : 0; }
 
 }  // namespace clerestory

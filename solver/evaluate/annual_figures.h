@@ -19,8 +19,8 @@ inline constexpr std::size_t kMostThresholds = 4;  ///< besides that of daylight
 struct YearRules {
   std::vector<float> occupied, daylight;  ///< H each, 1 for hours that count and 0 for others
   int occupied_hours = 0;                 ///< of the whole year, at least one
-  double threshold = 300;                 ///< of DA, cDA and sDA [lx]
-  std::vector<double> more_thresholds;    ///< whose hours are counted too [lx], at most kMostThresholds
+  double threshold = 300;                 ///< of DA, cDA and sDA [lx], > 0
+  std::vector<double> more_thresholds;    ///< whose hours are counted too [lx], > 0, at most kMostThresholds
 };
 
 /// hours       of the year, H, ascending: hour h goes from h to h + 1, [0, 8760).
@@ -31,7 +31,7 @@ YearRules year_rules(std::span<const int> hours, std::span<const double> diffuse
                      std::span<const std::uint8_t> is_occupied, double threshold = 300,
                      std::vector<double> more_thresholds = {});
 
-/// Relative errors of illuminances, [0, 1).
+/// Relative errors of illuminances, >= 0. From 1 on nothing is sure to be lit.
 struct YearError {
   double total = 0, direct = 0;
 };
@@ -70,8 +70,5 @@ std::vector<YearFigure> year_figures(const YearRules& rules);
 
 /// weight  area that each point stands for, >= 0; their sum > 0.
 AreaYear area_year(std::span<const PointYear> points, std::span<const double> weight, const YearRules& rules);
-
-/// Points that LEED v4.1 gives for an sDA 300/50 %: 1 from 40 % on, 2 from 55, 3 from 75.
-int leed_points(double sDA);
 
 }  // namespace clerestory

@@ -24,8 +24,8 @@ struct BlindsOfHour {
 };
 
 /// The least set: the fewest groups that, closed, leave at most 2 % of the points with 1,000 lx or more of direct sun;
-/// of sets as small the one that leaves the fewest such points, then that of the lowest number `closed`. Where no set
-/// complies, the smallest that leaves the fewest.
+/// of sets as small the one that leaves the fewest such points, then that whose last group is the earliest. Where no
+/// set complies, the smallest that leaves the fewest.
 ///
 /// groups  at most kMostWindowGroups, as many points each.
 /// steady  direct sun through windows without blinds [lx], by point; empty: none.

@@ -24,6 +24,15 @@ struct ShareWithin {
   double value = 0, low = 0, high = 0;
 };
 
+/// Whether a share [%] is so large. Sums of areas are rounded: twenty times a twentieth is the whole.
+constexpr bool reaches_share(double share, double least) { return share >= least - 1e-9; }
+
+/// Points that LEED v4.1 gives for an sDA 300/50 %.
+constexpr int leed_points(double sDA) {
+  return reaches_share(sDA, 75) ? 3 : reaches_share(sDA, 55) ? 2 : reaches_share(sDA, 40) ? 1 : 0;
+}
+inline constexpr double kLeedAse = 10;  ///< an ASE above it is to be explained in writing [%]
+
 /// A room or a grid.
 struct AreaYear {
   double area = 0;            ///< [m2], or whatever the weights are

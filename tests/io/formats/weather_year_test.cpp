@@ -112,6 +112,15 @@ TEST(DaylightYear, EveryHourIsTheOneThatASceneFileTakesOfTheWeatherFile) {
   }
 }
 
+TEST(DaylightYear, WeatherOfElsewhereIsToldWithItsDistance) {
+  const Weather weather = even_year();
+  Place place = weather.place;
+  place.latitude_deg -= 0.8;
+  EXPECT_TRUE(daylight_year(weather, place, 0, 0.2).warnings.empty()) << "89 km";
+  place.latitude_deg -= 0.2;  // a degree: 111 km
+  EXPECT_TRUE(warns(daylight_year(weather, place, 0, 0.2), "even.epw: is of Golden, 111 km from the scene's location"));
+}
+
 TEST(DaylightYear, ALeapDayIsLeftOutAndNamed) {
   Weather weather = even_year();
   const auto march = weather.hours.begin() + 59 * 24;

@@ -121,6 +121,10 @@ TEST(FiguresOf, BoundsAreWhatTheIlluminancesGiveWhenAllAreWrongByTheirError) {
   EXPECT_EQ(point.ASE_high, figures_of(total, scaled(direct, 1.25f), rules).ASE);
   EXPECT_LT(point.DA_low, point.DA);
   EXPECT_GT(point.ASE_high, point.ASE);
+  const PointYear unsure = figures_of(total, direct, rules, {.total = 1, .direct = 1.5});
+  EXPECT_EQ(unsure.DA_low, 0);
+  EXPECT_EQ(unsure.ASE_low, 0);
+  EXPECT_EQ(unsure.DA, point.DA);
 }
 
 TEST(AreaYear, CountsAreaAndNotPointsAndTellsBothRulesOfAse) {

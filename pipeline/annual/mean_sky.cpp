@@ -14,7 +14,7 @@ Sky mean_sky(std::span<const DaylightHour> hours, std::span<const float> counts,
   for (std::size_t h = 0; h < hours.size(); ++h) {
     if (!(counts[h] > 0)) continue;
     all += counts[h];
-    for (std::size_t k = 0; k < radiance.size(); ++k) radiance[k] += counts[h] * year.coarse[k * year.stride + h];
+    for (std::size_t k = 0; k < radiance.size(); ++k) radiance[k] += counts[h] * year.coarse.at(k, h);
     if (!hours[h].sun_up) continue;
     const std::size_t part = coarse.part_of(hours[h].sun);
     radiance[part] += counts[h] * hours[h].sun_normal_irradiance * hours[h].sun.z / coarse.on_horizontal(part);

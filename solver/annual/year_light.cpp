@@ -10,33 +10,33 @@
 namespace clerestory {
 namespace {
 
-void look_at(const DaylightHour& hour, std::size_t h, const SkyParts& parts, std::size_t stride,
-             std::vector<float>& radiance, std::vector<float>& of_hour) {
+void look_at(const DaylightHour& hour, std::size_t h, const SkyParts& parts, RadianceByHour& radiance,
+             std::vector<float>& of_hour) {
   const double sky = luminous_mean(hour.sky.horizontal_irradiance);
   parts.look_at(hour.sky.shape, hour.sky.sun, sky, of_hour);
-  for (std::size_t k = 0; k < parts.count(); ++k) radiance[k * stride + h] = of_hour[k];
+  for (std::size_t k = 0; k < parts.count(); ++k) radiance.at(k, h) = of_hour[k];
   const double sun = hour.sun_up ? hour.sun_normal_irradiance * std::max(0.0, hour.sun.z) : 0;
-  radiance[parts.ground() * stride + h] =
-      static_cast<float>((sky + sun) * hour.sky.ground_reflectance / std::numbers::pi);
+  radiance.at(parts.ground(), h) = static_cast<float>((sky + sun) * hour.sky.ground_reflectance / std::numbers::pi);
 }
 
 // Sums of four points over sixteen hours stay in registers. Products and sums are rounded one by one, and each hour is
 // summed by itself in the order of the coefficients, so wider registers find the same bits.
-constexpr std::size_t kPoints = 4, kHours = 16;
+constexpr std::size_t kPoints = 4, kHours = RadianceByHour::kTogether;
 
 #if defined(__x86_64__)
 #define CLERESTORY_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define CLERESTORY_WIDE
 #endif
-/// sum[p][h] += coefficient[k][p] * light[k][h], for sixteen hours from `hour` on.
-CLERESTORY_WIDE void add_light(const float* light, std::size_t stride, std::size_t hour, const std::uint32_t* lane,
-                               const std::array<float, kPoints>* coefficient, std::size_t count, float (*sum)[kHours]) {
+/// sum[p][h] += coefficient[k][p] * light[lane[k]][h], for sixteen hours.
+CLERESTORY_WIDE void add_light(const float* light, const std::uint32_t* lane,
+                               const std::array<float, kPoints>* coefficient, std::size_t count,
+                               float (*sum)[kHours]) {
   float s[kPoints][kHours];
   for (std::size_t p = 0; p < kPoints; ++p)
     for (std::size_t h = 0; h < kHours; ++h) s[p][h] = sum[p][h];
   for (std::size_t k = 0; k < count; ++k) {
-    const float* const L = light + lane[k] * stride + hour;
+    const float* const L = light + lane[k] * kHours;
     for (std::size_t p = 0; p < kPoints; ++p)
       for (std::size_t h = 0; h < kHours; ++h) s[p][h] += coefficient[k][p] * L[h];
   }
@@ -65,18 +65,13 @@ struct Gathered {
 
 YearLight light_of_year(std::span<const DaylightHour> hours, const SkyParts& fine, const SkyParts& coarse,
                         const SunNodes& nodes) {
-  const std::size_t stride = (hours.size() + kHours - 1) / kHours * kHours;
-  YearLight year{hours.size(),
-                 stride,
-                 std::vector<float>((fine.count() + 1) * stride),
-                 std::vector<float>((coarse.count() + 1) * stride),
-                 std::vector<float>(hours.size()),
-                 nodes.of_sun};
+  YearLight year{hours.size(), {fine.count() + 1, hours.size()}, {coarse.count() + 1, hours.size()},
+                 std::vector<float>(hours.size()), nodes.of_sun};
   parallel_for(hours.size(), 16, [&](std::size_t begin, std::size_t end) {
     std::vector<float> of_fine(fine.count()), of_coarse(coarse.count());
     for (std::size_t h = begin; h < end; ++h) {
-      look_at(hours[h], h, fine, stride, year.fine, of_fine);
-      look_at(hours[h], h, coarse, stride, year.coarse, of_coarse);
+      look_at(hours[h], h, fine, year.fine, of_fine);
+      look_at(hours[h], h, coarse, year.coarse, of_coarse);
       year.sun[h] = hours[h].sun_up ? static_cast<float>(hours[h].sun_normal_irradiance) : 0.0f;
     }
   });
@@ -86,7 +81,7 @@ YearLight light_of_year(std::span<const DaylightHour> hours, const SkyParts& fin
 void series_of(const YearLight& year, std::span<const PointCoefficients> points, std::span<const float> sun,
                std::span<float> total, std::span<float> direct) {
   constexpr auto kLux = static_cast<float>(kWhiteEfficacy);
-  const std::size_t H = year.hours, coarse = year.coarse.size() / std::max<std::size_t>(year.stride, 1);
+  const std::size_t H = year.hours, coarse = year.coarse.parts();
   Gathered straight, reflected;
   for (std::size_t first = 0; first < points.size(); first += kPoints) {
     const std::size_t count = std::min(kPoints, points.size() - first);
@@ -95,10 +90,8 @@ void series_of(const YearLight& year, std::span<const PointCoefficients> points,
     reflected.gather(coarse, count, [&](std::size_t p) { return points[first + p].reflected.data(); });
     for (std::size_t hour = 0; hour < H; hour += kHours) {
       float sum[kPoints][kHours] = {};
-      add_light(year.fine.data(), year.stride, hour, straight.lane.data(), straight.coefficient.data(),
-                straight.lane.size(), sum);
-      add_light(year.coarse.data(), year.stride, hour, reflected.lane.data(), reflected.coefficient.data(),
-                reflected.lane.size(), sum);
+      add_light(year.fine.from(hour), straight.lane.data(), straight.coefficient.data(), straight.lane.size(), sum);
+      add_light(year.coarse.from(hour), reflected.lane.data(), reflected.coefficient.data(), reflected.lane.size(), sum);
       for (std::size_t p = 0; p < count; ++p) {
         const float* const of_node = points[first + p].reflected.data() + coarse;
         for (std::size_t h = hour; h < std::min(hour + kHours, H); ++h) {

@@ -12,13 +12,35 @@
 
 namespace clerestory {
 
-/// H hours in which there is light. Radiances are white [W/(m2 sr)], irradiances [W/m2].
+/// Radiance of each part and of the ground by the hour, white [W/(m2 sr)]: sixteen hours of a part, then those of the
+/// next, so that sums over parts read memory in a row.
+class RadianceByHour {
+ public:
+  static constexpr std::size_t kTogether = 16;
+
+  RadianceByHour() = default;
+  RadianceByHour(std::size_t parts, std::size_t hours)
+      : parts_(parts), value_((hours + kTogether - 1) / kTogether * kTogether * parts) {}
+  std::size_t parts() const { return parts_; }
+  float& at(std::size_t part, std::size_t hour) { return value_[index(part, hour)]; }
+  float at(std::size_t part, std::size_t hour) const { return value_[index(part, hour)]; }
+  /// Of sixteen hours from `hour` on, a multiple of that, those beyond the last dark: part after part.
+  const float* from(std::size_t hour) const { return &value_[hour * parts_]; }
+
+ private:
+  std::size_t index(std::size_t part, std::size_t hour) const {
+    return hour / kTogether * kTogether * parts_ + part * kTogether + hour % kTogether;
+  }
+  std::size_t parts_ = 0;
+  std::vector<float> value_;
+};
+
+/// H hours in which there is light.
 struct YearLight {
-  std::size_t hours = 0, stride = 0;  ///< H, and how far rows are apart: H and a little, which is dark
-  std::vector<float> fine;            ///< (parts + 1) x stride: radiance of each fine part, then of the ground
-  std::vector<float> coarse;          ///< the same of the coarse parts
-  std::vector<float> sun;             ///< H, irradiance of a plane that faces the sun
-  std::vector<AmongNodes> of_sun;     ///< H
+  std::size_t hours = 0;            ///< H
+  RadianceByHour fine, coarse;      ///< parts and then the ground
+  std::vector<float> sun;           ///< H, irradiance of a plane that faces the sun [W/m2]
+  std::vector<AmongNodes> of_sun;   ///< H
 };
 
 /// hours  with the sun's direction where it is up; nodes.of_sun of each hour.

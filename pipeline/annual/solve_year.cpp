@@ -60,7 +60,7 @@ YearRules rules_of(std::span<const DaylightHour> hours, const YearSettings& sett
   std::vector<int> number;
   std::vector<double> diffuse;
   for (const DaylightHour& h : hours) number.push_back(h.hour), diffuse.push_back(h.diffuse_horizontal_lux);
-  return year_rules(number, diffuse, settings.is_occupied, settings.threshold);
+  return year_rules(number, diffuse, settings.is_occupied, settings.threshold, settings.more_thresholds);
 }
 
 /// Places of the points that light is shown on, and of sensors.
@@ -167,7 +167,7 @@ class PointYears {
 
 /// Which room decides on the blinds, by point.
 std::vector<const YearArea*> rooms_of_points(std::size_t points, const std::vector<YearArea>& areas,
-                                               const std::vector<std::uint32_t>& area_of_point) {
+                                             const std::vector<std::uint32_t>& area_of_point) {
   std::vector<const YearArea*> of(points, nullptr);
   for (std::size_t p = 0; p < points && !area_of_point.empty(); ++p)
     if (area_of_point[p] < areas.size()) of[p] = &areas[area_of_point[p]];
@@ -255,7 +255,8 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
 
   out.rooms = rooms_facing_up(out.solved.patches, out.solved.lightmap);
   out.grids = grids_of(scene.sensors);
-  if (states.size() > 1) {
+  out.has_blinds = states.size() > 1;
+  if (out.has_blinds) {
     operate_blinds(states, points, out.rules, monitor, out.rooms);
     operate_blinds(states, at_sensors, out.rules, monitor, out.grids);
   }

@@ -23,6 +23,7 @@ struct YearSettings {
   Settings solve;                         ///< method `hierarchical`
   std::vector<std::uint8_t> is_occupied;  ///< by hour of the year, 8,760
   double threshold = 300;                 ///< of DA, cDA and sDA [lx]
+  std::vector<double> more_thresholds{};  ///< whose hours are counted, too [lx]
   std::optional<std::size_t> sky_parts;   ///< 145, 577 or 2305; empty: by accuracy
   std::size_t part = 1, parts = 1;        ///< of the points, which part of how many is computed
   bool keeps_all_hours = false;           ///< series are asked for of all hours with light, not just those that count
@@ -49,6 +50,7 @@ struct YearArea {
 struct YearSolved {
   Solved solved;  ///< elements, lightmap and solution of the mean light of the occupied hours
   YearRules rules;
+  bool has_blinds = false;
   std::vector<int> hours;  ///< H, of the year
   std::size_t sky_parts = 0, sun_nodes = 0;
   std::vector<PointYear> of_points, of_sensors;  ///< those of the part that was asked for; others have no hours

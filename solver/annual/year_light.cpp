@@ -30,8 +30,7 @@ constexpr std::size_t kPoints = 4, kHours = RadianceByHour::kTogether;
 #endif
 /// sum[p][h] += coefficient[k][p] * light[lane[k]][h], for sixteen hours.
 CLERESTORY_WIDE void add_light(const float* light, const std::uint32_t* lane,
-                               const std::array<float, kPoints>* coefficient, std::size_t count,
-                               float (*sum)[kHours]) {
+                               const std::array<float, kPoints>* coefficient, std::size_t count, float (*sum)[kHours]) {
   float s[kPoints][kHours];
   for (std::size_t p = 0; p < kPoints; ++p)
     for (std::size_t h = 0; h < kHours; ++h) s[p][h] = sum[p][h];
@@ -65,8 +64,11 @@ struct Gathered {
 
 YearLight light_of_year(std::span<const DaylightHour> hours, const SkyParts& fine, const SkyParts& coarse,
                         const SunNodes& nodes) {
-  YearLight year{hours.size(), {fine.count() + 1, hours.size()}, {coarse.count() + 1, hours.size()},
-                 std::vector<float>(hours.size()), nodes.of_sun};
+  YearLight year{hours.size(),
+                 {fine.count() + 1, hours.size()},
+                 {coarse.count() + 1, hours.size()},
+                 std::vector<float>(hours.size()),
+                 nodes.of_sun};
   parallel_for(hours.size(), 16, [&](std::size_t begin, std::size_t end) {
     std::vector<float> of_fine(fine.count()), of_coarse(coarse.count());
     for (std::size_t h = begin; h < end; ++h) {
@@ -91,7 +93,8 @@ void series_of(const YearLight& year, std::span<const PointCoefficients> points,
     for (std::size_t hour = 0; hour < H; hour += kHours) {
       float sum[kPoints][kHours] = {};
       add_light(year.fine.from(hour), straight.lane.data(), straight.coefficient.data(), straight.lane.size(), sum);
-      add_light(year.coarse.from(hour), reflected.lane.data(), reflected.coefficient.data(), reflected.lane.size(), sum);
+      add_light(year.coarse.from(hour), reflected.lane.data(), reflected.coefficient.data(), reflected.lane.size(),
+                sum);
       for (std::size_t p = 0; p < count; ++p) {
         const float* const of_node = points[first + p].reflected.data() + coarse;
         for (std::size_t h = hour; h < std::min(hour + kHours, H); ++h) {

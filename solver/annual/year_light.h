@@ -37,10 +37,10 @@ class RadianceByHour {
 
 /// H hours in which there is light.
 struct YearLight {
-  std::size_t hours = 0;            ///< H
-  RadianceByHour fine, coarse;      ///< parts and then the ground
-  std::vector<float> sun;           ///< H, irradiance of a plane that faces the sun [W/m2]
-  std::vector<AmongNodes> of_sun;   ///< H
+  std::size_t hours = 0;           ///< H
+  RadianceByHour fine, coarse;     ///< parts and then the ground
+  std::vector<float> sun;          ///< H, irradiance of a plane that faces the sun [W/m2]
+  std::vector<AmongNodes> of_sun;  ///< H
 };
 
 /// hours  with the sun's direction where it is up; nodes.of_sun of each hour.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <numbers>
 
 #include "solver/model/parallel.h"
@@ -28,19 +29,21 @@ constexpr std::size_t kPoints = 4, kHours = RadianceByHour::kTogether;
 #else
 #define CLERESTORY_WIDE
 #endif
+using EightHours = float __attribute__((vector_size(32)));
+constexpr std::size_t kVectors = kHours / 8;
+
 /// sum[p][h] += coefficient[k][p] * light[lane[k]][h], for sixteen hours.
 CLERESTORY_WIDE void add_light(const float* light, const std::uint32_t* lane,
-                               const std::array<float, kPoints>* coefficient, std::size_t count, float (*sum)[kHours]) {
-  float s[kPoints][kHours];
-  for (std::size_t p = 0; p < kPoints; ++p)
-    for (std::size_t h = 0; h < kHours; ++h) s[p][h] = sum[p][h];
+                               const std::array<float, kPoints>* coefficient, std::size_t count,
+                               float (*sum)[kHours]) {
+  EightHours s[kPoints][kVectors], L[kVectors];
+  std::memcpy(&s, sum, sizeof s);
   for (std::size_t k = 0; k < count; ++k) {
-    const float* const L = light + lane[k] * kHours;
+    std::memcpy(&L, light + lane[k] * kHours, sizeof L);
     for (std::size_t p = 0; p < kPoints; ++p)
-      for (std::size_t h = 0; h < kHours; ++h) s[p][h] += coefficient[k][p] * L[h];
+      for (std::size_t v = 0; v < kVectors; ++v) s[p][v] += coefficient[k][p] * L[v];
   }
-  for (std::size_t p = 0; p < kPoints; ++p)
-    for (std::size_t h = 0; h < kHours; ++h) sum[p][h] = s[p][h];
+  std::memcpy(sum, &s, sizeof s);
 }
 
 /// Lanes that any of four points has something of.

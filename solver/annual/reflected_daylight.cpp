@@ -57,8 +57,7 @@ Field straight_from_suns(const KeptTransport& kept, const RayScene& rays, std::s
   for (std::size_t k = 0; k < node_of_sun.size(); ++k) layers[node_of_sun[k]].lights[k] = Spectrum(1.0);
   const Problem problem{kept.elements, rays, suns};
   DirectRows rows;
-  direct_light(Illumination(problem), {.shadow_rays = 16, .edge_rays = 64, .sky_rays = 0, .seed = seed}, monitor,
-               &rows);
+  direct_light(Illumination(problem), {.shadow_rays = 8, .edge_rays = 16, .sky_rays = 0, .seed = seed}, monitor, &rows);
   return direct_layers(kept.elements, rows, layers).delta_light;
 }
 

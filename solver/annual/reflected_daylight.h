@@ -32,7 +32,7 @@ struct ReflectedDaylight {
 ///
 /// kept   of a solve under a sky, complete.
 /// nodes  directions of the sun.
-/// Threads: same bits for any thread count. Cost: 16 to 64 rays an element and node; one balance for eight lanes.
+/// Threads: same bits for any thread count. Cost: 8 to 24 rays an element and node; one balance for eight lanes.
 ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& rays, const SkyParts& parts,
                                    std::span<const Vec3> nodes, std::uint64_t seed, const Monitor& monitor = {});
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "solver/gather/gather_point.h"
 #include "solver/model/random_stream.h"
@@ -32,12 +33,35 @@ std::vector<std::vector<std::uint32_t>> parts_around(const SkyParts& parts) {
   return around;
 }
 
+/// Plans of points that look alike.
+class SharedPlans {
+ public:
+  SharedPlans(const YearScene& scene, const GatherPattern& pattern)
+      : scene_(scene), pattern_(pattern), wants_(wants_plan(scene.light, pattern)) {}
+
+  const GatherPlan& at(const ReceivingPoint& point, unsigned long long& rays) {
+    constexpr double kAlike = 0.9999;
+    if (!wants_) return none_;
+    for (const auto& [made_at, plan] : plans_)
+      if (dot(made_at.n, point.n) > kAlike && length(made_at.p - point.p) <= scene_.plan_reach) return plan;
+    plans_.push_back({point, plan_gather(scene_.light, point.p, point.n, pattern_, rays)});
+    return plans_.back().second;
+  }
+
+ private:
+  const YearScene& scene_;
+  const GatherPattern& pattern_;
+  bool wants_;
+  GatherPlan none_;
+  std::vector<std::pair<ReceivingPoint, GatherPlan>> plans_;
+};
+
 }  // namespace
 
 YearScene year_scene(const Illumination& light, const SkyParts& fine, const ReflectedDaylight& reflected,
-                     const YearLight& year, std::span<const DaylightHour> hours, std::size_t sun_rays,
-                     std::uint64_t seed) {
-  YearScene scene{light, fine, reflected, year, {}, {}, {}, parts_around(fine)};
+                     const YearLight& year, std::span<const DaylightHour> hours, double plan_reach,
+                     std::size_t sun_rays, std::uint64_t seed) {
+  YearScene scene{light, fine, reflected, year, {}, {}, {}, plan_reach, parts_around(fine)};
   for (std::size_t h = 0; h < hours.size(); ++h) {
     if (!(year.sun[h] > 0)) continue;
     std::span<const MirrorWay> ways;
@@ -58,12 +82,13 @@ unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint
   LightRow row;
   std::vector<PointCoefficients> coefficients(
       points.size(), {std::vector<float>(scene.fine.count() + 1), std::vector<float>(scene.reflected.lanes)});
+  SharedPlans plans(scene, pattern);
   std::vector<ReceivingPoint> places;
   std::vector<bool> may_come;
   for (std::size_t p = 0; p < points.size(); ++p) {
     for (std::size_t k = 0; k < points[p].at.size(); ++k) {
       const ReceivingPoint& at = points[p].at[k];
-      gather_point(scene.light, at.p, at.n, pattern, rays, &row);
+      gather_point(scene.light, at.p, at.n, pattern, plans.at(at, rays), rays, &row);
       add_row(row, at.n, scene.fine, scene.reflected, points[p].weight[k], sums, coefficients[p]);
     }
     const std::vector<bool> near = parts_near_seen(scene, coefficients[p]);

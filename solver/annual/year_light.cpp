@@ -34,8 +34,7 @@ constexpr std::size_t kVectors = kHours / 8;
 
 /// sum[p][h] += coefficient[k][p] * light[lane[k]][h], for sixteen hours.
 CLERESTORY_WIDE void add_light(const float* light, const std::uint32_t* lane,
-                               const std::array<float, kPoints>* coefficient, std::size_t count,
-                               float (*sum)[kHours]) {
+                               const std::array<float, kPoints>* coefficient, std::size_t count, float (*sum)[kHours]) {
   EightHours s[kPoints][kVectors], L[kVectors];
   std::memcpy(&s, sum, sizeof s);
   for (std::size_t k = 0; k < count; ++k) {

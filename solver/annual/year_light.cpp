@@ -83,7 +83,7 @@ YearLight light_of_year(std::span<const DaylightHour> hours, const SkyParts& fin
 }
 
 void series_of(const YearLight& year, std::span<const PointCoefficients> points, std::span<const float> sun,
-               std::span<float> total, std::span<float> direct) {
+               std::span<const float> in_room, std::span<float> total, std::span<float> direct) {
   constexpr auto kLux = static_cast<float>(kWhiteEfficacy);
   const std::size_t H = year.hours, coarse = year.coarse.parts();
   Gathered straight, reflected;
@@ -97,18 +97,19 @@ void series_of(const YearLight& year, std::span<const PointCoefficients> points,
       add_light(year.fine.from(hour), straight.lane.data(), straight.coefficient.data(), straight.lane.size(), sum);
       add_light(year.coarse.from(hour), reflected.lane.data(), reflected.coefficient.data(), reflected.lane.size(),
                 sum);
-      for (std::size_t p = 0; p < count; ++p) {
-        const float* const of_node = points[first + p].reflected.data() + coarse;
+      for (std::size_t p = 0; p < count; ++p)
         for (std::size_t h = hour; h < std::min(hour + kHours, H); ++h) {
           const std::size_t at = (first + p) * H + h;
           const AmongNodes& among = year.of_sun[h];
           float by_sun = 0;
-          for (std::size_t k = 0; k < among.node.size(); ++k)
-            if (among.weight[k] > 0) by_sun += among.weight[k] * of_node[among.node[k]];
+          for (const auto& [room, of_node] : points[first + p].suns) {
+            float sent = 0;
+            for (std::size_t k = 0; k < among.node.size(); ++k) sent += among.weight[k] * of_node[among.node[k]];
+            by_sun += sent * in_room[room * H + h];
+          }
           direct[at] = kLux * year.sun[h] * sun[at];
           total[at] = kLux * (sum[p][h - hour] + year.sun[h] * by_sun) + direct[at];
         }
-      }
     }
   }
 }

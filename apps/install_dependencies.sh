@@ -16,6 +16,7 @@ packages=(
   libstb-dev                              # places in a texture
   libassimp-dev nlohmann-json3-dev        # models and scene files in
   libvtk9-dev                             # results out
+  libhdf5-dev                             # hours of a year out
   libopenimageio-dev                      # sky images and textures in
   libcli11-dev                            # the command line
   "$@"

@@ -16,7 +16,7 @@ endforeach()
 # The warnings go along because static libraries name all they were linked with; they bind nobody else.
 install(TARGETS ${libraries} clerestory_warnings EXPORT ClerestoryTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS clerestory_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS clerestory_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clerestory)
+install(TARGETS clerestory_images clerestory_hdf5 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clerestory)
 # What reads IFC, with the licence of web-ifc; nothing when it was not there to build with.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clerestory/ifc
   DESTINATION ${CMAKE_INSTALL_DATADIR}/clerestory OPTIONAL)
@@ -35,6 +35,7 @@ install(FILES pipeline/at_time.h pipeline/collect_around.h pipeline/observer.h p
 install(FILES meshing/build_patches.h meshing/make_lightmap.h DESTINATION ${include_dir}/meshing)
 install(FILES io/atomic_file.h io/moment.h io/read_scene.h io/read_sensors.h io/write_result.h io/write_sensors.h io/run_report.h
   DESTINATION ${include_dir}/io)
+install(FILES io/formats/epw.h io/formats/weather_year.h DESTINATION ${include_dir}/io/formats)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Clerestory)
 install(EXPORT ClerestoryTargets NAMESPACE clerestory:: DESTINATION ${package_dir})

@@ -315,6 +315,8 @@ void AtomicFile::commit() {
   drop_old();
 }
 
+fs::path AtomicFile::name_to_open() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
 int AtomicFile::release() { return std::exchange(in_place_ ? device_ : descriptor_, -1); }
 
 void Outputs::commit() {

@@ -30,6 +30,8 @@ class AtomicFile {
   void write(std::string_view bytes);
   /// The same at a place of the file, for writers that go back.
   void write_at(std::uint64_t place, std::string_view bytes);
+  /// The same, at the end, for what a library writes through a name of its own: opened with it, until commit().
+  std::filesystem::path name_to_open() const;
   const std::filesystem::path& destination() const { return asked_; }
   /// throws  InputError as write() does; the old file is untouched then.
   void commit();

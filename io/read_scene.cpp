@@ -54,7 +54,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
                                        : "sky",
                           " is for a model given directly; write it into the scene file"));
   }
-  return read_scene_file(file, options.times);
+  return read_scene_file(file, options);
 }
 
 }  // namespace clerestory

@@ -17,6 +17,7 @@ struct ReadOptions {
   std::optional<std::string> up{};    ///< y | z
   std::optional<std::string> sky{};   ///< NAME[:LUX]
   std::vector<Moment> times{};        ///< in place of the scene file's own; empty: that
+  bool for_a_year = false;  ///< of a scene file's daylight only what is there in any hour: place, north, and the ground
 };
 
 /// Reads a scene file (.json) or a model (.obj .glb .gltf .ply .stl .off .dae .fbx .ifc) into metres, z up.

@@ -70,4 +70,19 @@ void write_sensors(const std::filesystem::path& file, std::span<const SensorPoin
   whole.commit();
 }
 
+void write_sensor_figures(AtomicFile& file, std::span<const SensorPoint> points, std::span<const std::string> names,
+                          std::span<const double> value) {
+  std::string text = "x,y,z,nx,ny,nz";
+  for (const std::string& name : names) text += ',' + name;
+  text += '\n';
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [p, n] = points[i];
+    append(text, p.x);
+    for (const double coordinate : {p.y, p.z, n.x, n.y, n.z}) append(text += ',', coordinate);
+    for (const double figure : value.subspan(i * names.size(), names.size())) append(text += ',', figure);
+    text += '\n';
+  }
+  file.write(text);
+}
+
 }  // namespace clerestory

@@ -27,4 +27,8 @@ void write_sensors(AtomicFile& file, std::span<const SensorPoint> points, const 
 void write_sensors(const std::filesystem::path& file, std::span<const SensorPoint> points, const Field& E,
                    const Field& std_error = {});
 
+/// One row a point: x,y,z,nx,ny,nz and then its figures under their names. value: points x names.
+void write_sensor_figures(AtomicFile& file, std::span<const SensorPoint> points, std::span<const std::string> names,
+                          std::span<const double> value);
+
 }  // namespace clerestory

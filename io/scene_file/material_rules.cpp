@@ -50,6 +50,20 @@ void read_emission(const JsonObject& object, Material& material, ChannelCount& c
   }
 }
 
+/// "blinds" of a pane that passes `open` without them.
+Blinds read_blinds(const JsonObject& pane, const JsonColour& open, ChannelCount& channels) {
+  const JsonObject object(pane.at("blinds"), pane.place("blinds"), {"transmittance", "group"});
+  const auto closed = object.colour("transmittance", kTransmittance);
+  if (!closed)
+    throw InputError(text(object.place("transmittance"),
+                          " is missing; it is that of the pane with its blinds closed, 0.05 for common venetian ones"));
+  channels.note(*closed, object.place("transmittance"));
+  if ((open.value - closed->value).min() < 0)
+    throw InputError(text(object.place("transmittance"), " = ", closed->value.max(),
+                          " is more than the pane passes without blinds, ", open.value.max()));
+  return {closed->value, object.word("group").value_or("")};
+}
+
 Material read_material(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
   constexpr std::string_view kTypes[] = {"diffuse", "glass", "diffuser", "mirror"};
   const std::string type = object.choice("type", kTypes).value_or("diffuse");
@@ -69,6 +83,8 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
     if (*sides != 1 && *sides != 2) throw InputError(text(object.place("sides"), " = ", *sides, " is neither 1 nor 2"));
     material.sides = static_cast<int>(*sides);
   }
+  if (type != "glass" && object.has("blinds"))
+    throw InputError(text(object.place("blinds"), ": blinds belong to a pane; write \"type\": \"glass\""));
   if (type == "glass") {
     if (!transmittance) {
       throw InputError(
@@ -87,6 +103,7 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
     }
     material.kind = MaterialKind::glass;
     material.transmittance = transmittance->value;
+    if (object.has("blinds")) material.blinds = read_blinds(object, *transmittance, channels);
   } else if (type == "diffuser") {
     if (!transmittance) {
       throw InputError(text(object.place("transmittance"),
@@ -156,7 +173,7 @@ std::vector<MaterialRule> read_material_rules(const Json& materials, const std::
   for (const auto& [pattern, value] : materials.items()) {
     const JsonObject object(value, text(file_name, ": materials '", quotable(pattern), "'"),
                             {"type", "reflectance", "transmittance", "sides", "exitance", "luminous_exitance",
-                             "radiance", "luminance", "power", "luminous_flux", "group"},
+                             "radiance", "luminance", "power", "luminous_flux", "group", "blinds"},
                             ": ");
     rules.push_back({pattern, read_material(object, channels, warnings), {}});
   }

@@ -14,6 +14,7 @@
 #include "io/scene_file/json_object.h"
 #include "io/scene_file/luminaire_entries.h"
 #include "io/scene_file/material_rules.h"
+#include "io/scene_file/place_and_time.h"
 #include "io/scene_file/place_model.h"
 #include "io/scene_file/room_entries.h"
 #include "io/scene_file/sensor_entries.h"
@@ -127,7 +128,7 @@ void compare_north(const JsonObject& root, const std::string& file_name, Scene& 
 
 }  // namespace
 
-Scene read_scene_file(const std::filesystem::path& file, std::span<const Moment> times) {
+Scene read_scene_file(const std::filesystem::path& file, const ReadOptions& options) {
   const std::string name = short_name(file);
   const Json json = parse_json<Json>(read_input_file(file, kMaxSceneFileBytes), name);
   const JsonObject root = root_of_scene(json, name);
@@ -144,10 +145,15 @@ Scene read_scene_file(const std::filesystem::path& file, std::span<const Moment>
   PhotometryFiles photometry;
   read_luminaire_entries(root, name, folder, photometry, channels, scene);
   std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, photometry, channels, scene);
-  if (times.empty())
+  if (options.for_a_year)
+    scene.ground_reflectance = read_ground(root, name);
+  else if (options.times.empty())
     scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
   else
-    read_sky_of_times(root, name, folder, times, channels, scene);
+    read_sky_of_times(root, name, folder, options.times, channels, scene);
+  const PlaceAndTime at = read_place_and_time(root, name);
+  scene.place = at.place;
+  scene.north_deg = at.north_deg;
   if (root.has("solver")) {
     scene.settings = read_settings(JsonObject(root.at("solver"), name + ": solver",
                                               {"method", "accuracy", "oracle", "max_element", "detail", "target_error",

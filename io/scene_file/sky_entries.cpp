@@ -6,7 +6,9 @@
 #include <numbers>
 
 #include "io/formats/read_sky_image.h"
+#include "io/formats/weather_light.h"
 #include "io/input_file.h"
+#include "io/odd_place.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/scene_file/place_and_time.h"
 #include "io/text.h"
@@ -61,26 +63,31 @@ struct SkyEntries {
   std::optional<Spectrum> sun_irradiance;
 };
 
-/// One hour of a weather file, or what the scene gives in its place.
-struct HourOfDaylight {
-  double direct_normal = 0, diffuse_horizontal = 0;                 ///< [W/m2]
-  std::optional<double> direct_normal_lux, diffuse_horizontal_lux;  ///< measured [lx]
-  double precipitable_water = 2;                                    ///< [cm]
-  std::optional<int> line;                                          ///< of the weather file
-  std::optional<Daylight::Hour> weather;                            ///< which hour of which file
+/// One hour of light, and where it comes from.
+struct ChosenHour {
+  HourOfDaylight light;
+  std::optional<int> line;                ///< of the weather file
+  std::optional<Daylight::Hour> weather;  ///< which hour of which file
 };
+
+std::optional<JsonObject> sky_object(const JsonObject& root, const std::string& file_name) {
+  if (!root.has("sky")) return {};
+  return JsonObject(
+      root.at("sky"), file_name + ": sky",
+      {"model", "horizontal_illuminance", "type", "ground_reflectance", "direct_normal", "diffuse_horizontal",
+       "dew_point", "precipitable_water", "weather", "day_of_year", "hour", "image", "rotation"});
+}
+
+double ground_of(const JsonObject& sky) {
+  constexpr Range kGround{.low = 0, .high = 1, .advice = "the ground cannot reflect more than it receives"};
+  return sky.number("ground_reflectance", kGround).value_or(Sky{}.ground_reflectance);
+}
 
 SkyEntries read_entries(const JsonObject& root, const std::string& file_name, const TimeOfSeries* series,
                         ChannelCount& channels) {
   SkyEntries read;
   read.where_and_when = read_place_and_time(root, file_name, series ? std::optional(series->moment) : std::nullopt);
-  if (root.has("sky")) {
-    read.sky.emplace(root.at("sky"), file_name + ": sky",
-                     std::initializer_list<std::string_view>{"model", "horizontal_illuminance", "type",
-                                                             "ground_reflectance", "direct_normal",
-                                                             "diffuse_horizontal", "dew_point", "precipitable_water",
-                                                             "weather", "day_of_year", "hour", "image", "rotation"});
-  }
+  read.sky = sky_object(root, file_name);
   if (!root.has("sun")) return read;
   if (root.at("sun") == false) {
     read.no_sun = true;
@@ -146,35 +153,9 @@ void check_sky(const JsonObject& sky) {
   refuse_pair(sky, "weather", "image", "both say how bright the sky is");
 }
 
-/// Middle of the part of an hour in which the sun is up, or of the hour. The values of a weather file are means over
-/// the hour; at sunrise and sunset its middle may be night.
-double middle_of_daylight(const Place& place, Moment moment, int hour_end) {
-  constexpr int kSteps = 60;
-  double sum = 0;
-  int lit = 0;
-  for (int k = 0; k < kSteps; ++k) {
-    moment.hour = hour_end - 1 + (k + 0.5) / kSteps;
-    if (sun_position(place, moment).elevation_deg > 0) sum += moment.hour, ++lit;
-  }
-  return lit > 0 ? sum / lit : hour_end - 0.5;
-}
-
-/// Hours between the noon of the sun's mean course and that of the clock.
-double hours_off(const Place& place) { return std::remainder(place.longitude_deg / 15 - place.timezone, 24); }
-/// More than any time zone of the world asks for, but for a strip of western China.
-bool is_odd(const Place& place) { return std::abs(hours_off(place)) > 3; }
-
-void warn_of_place(const std::string& who, const Place& place, std::vector<std::string>& warnings) {
-  if (!is_odd(place)) return;
-  warnings.push_back(text(who, ": longitude ", place.longitude_deg, " and timezone ", place.timezone, " are ",
-                          std::round(std::abs(hours_off(place)) * 10) / 10,
-                          " hours of the sun apart; longitude counts east positive, west negative, and timezone in ",
-                          "hours ahead of UTC (gensky and gendaylit count both the other way round)"));
-}
-
 /// Finds the hour of the weather file; place and time of the scene become those of the file where it says none.
-HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, const std::filesystem::path& folder,
-                               TimeOfSeries* series, PlaceAndTime& at, std::vector<std::string>& warnings) {
+ChosenHour hour_of_weather(const JsonObject& root, const JsonObject& sky, const std::filesystem::path& folder,
+                           TimeOfSeries* series, PlaceAndTime& at, std::vector<std::string>& warnings) {
   const std::string named = *sky.word("weather");
   require_file(folder / named, sky.place("weather"), named);
   const bool by_day = sky.has("day_of_year") || sky.has("hour");
@@ -229,26 +210,11 @@ HourOfDaylight hour_of_weather(const JsonObject& root, const JsonObject& sky, co
   at.time = moment;
 
   const bool is_night = sun_position(*at.place, moment).elevation_deg <= 0;
-  const auto needed = [&](const std::optional<double>& value, std::string_view name) {
-    if (value) return *value;
-    if (is_night) return 0.0;
-    throw InputError(text(weather.file, ":", found.line, ": ",
-                          found.flaw.empty() ? text("the ", name, " of this hour is missing") : found.flaw,
+  if (const std::string missing = missing_radiation(found, is_night); !missing.empty()) {
+    throw InputError(text(weather.file, ":", found.line, ": ", missing,
                           "; choose another hour, or give direct_normal and diffuse_horizontal in the scene file"));
-  };
-  HourOfDaylight light;
-  light.direct_normal = needed(found.direct_normal, "direct normal radiation");
-  light.diffuse_horizontal = needed(found.diffuse_horizontal, "diffuse horizontal radiation");
-  light.direct_normal_lux = found.direct_normal_lux;
-  light.diffuse_horizontal_lux = found.diffuse_horizontal_lux;
-  // Dew points are measured; the precipitable water of many files is off by a factor of ten.
-  if (found.dew_point_c)
-    light.precipitable_water = precipitable_water(*found.dew_point_c);
-  else
-    light.precipitable_water = found.precipitable_water_cm.value_or(light.precipitable_water);
-  light.line = found.line;
-  light.weather = Daylight::Hour{weather.file, moment.month, moment.day, hour};
-  return light;
+  }
+  return {daylight_of(found), found.line, Daylight::Hour{weather.file, moment.month, moment.day, hour}};
 }
 
 HourOfDaylight hour_of_keys(const JsonObject& sky) {
@@ -279,42 +245,6 @@ std::string how_to_place_the_sun(const PlaceAndTime& at) {
   if (at.place) return "give \"time\": \"2026-03-21T12:00\", or \"sun\": { \"direction\": [0.3, -0.5, 0.8] }";
   return text("give \"location\" with latitude, longitude and timezone", at.time ? "" : ", and \"time\"",
               ", or \"sun\": { \"direction\": [0.3, -0.5, 0.8] }");
-}
-
-/// Luminous efficacies of daylight [lm/W], with room around what is measured (90 to 150). Other illuminances are in
-/// klux, hundredths, fillers or nothing.
-constexpr double kLeastEfficacy = 30, kMostEfficacy = 250;
-
-/// Whether so many lux are no light of so many W/m2. Files round to 1 W/m2 and 100 lx.
-bool is_no_daylight(const std::optional<double>& lux, double irradiance) {
-  return lux && *lux > 0 &&
-         (*lux < kLeastEfficacy * (irradiance - 1) - 100 || *lux > kMostEfficacy * (irradiance + 1) + 100);
-}
-
-/// Illuminances [lx] of sun and sky: measured, or by Perez' efficacies where the file has none or nonsense.
-void add_illuminances(HourOfDaylight& light, const SkyMeasurement& measured, const std::string& file,
-                      std::vector<std::string>& warnings) {
-  std::string why;
-  const auto check = [&](const std::optional<double>& lux, double irradiance, std::string_view name) {
-    if (!why.empty() || !is_no_daylight(lux, irradiance)) return;
-    why = text("its ", name, " illuminance, ", *lux, " lx for ", irradiance, " W/m2, is no daylight, which has ",
-               kLeastEfficacy, " to ", kMostEfficacy, " lm/W; the illuminances of this hour");
-  };
-  check(light.direct_normal_lux, light.direct_normal, "direct normal");
-  check(light.diffuse_horizontal_lux, light.diffuse_horizontal, "diffuse horizontal");
-  if (!why.empty()) light.direct_normal_lux = light.diffuse_horizontal_lux = std::nullopt;
-  const auto complete = [&](std::optional<double>& lux, double irradiance, double efficacy) {
-    // Files that hold no illuminances may say 0 for them in bright daylight.
-    if (lux && (*lux > 0 || irradiance == 0)) return;
-    lux = irradiance * efficacy;
-    if (why.empty() && irradiance > 0) why = "has no illuminances for this hour; they";
-  };
-  complete(light.direct_normal_lux, light.direct_normal, direct_efficacy(measured));
-  complete(light.diffuse_horizontal_lux, light.diffuse_horizontal, diffuse_efficacy(measured));
-  if (!why.empty() && light.line) {
-    warnings.push_back(
-        text(file, ":", *light.line, ": ", why, " are derived from its radiation by the efficacies of Perez (1990)"));
-  }
 }
 
 void set_image(const JsonObject& object, const std::filesystem::path& folder, double north_deg, Sky& sky,
@@ -397,17 +327,16 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
   if (at.place) warn_of_place(root.place("location"), *at.place, warnings);
   const std::optional<JsonObject>& object = entries.sky;
   Sky sky;
-  std::optional<HourOfDaylight> hour;
+  std::optional<ChosenHour> hour;
   if (object) {
     check_sky(*object);
     sky.model = model_of(*object, warnings);
     warn_of_idle_keys(*object, sky.model, warnings);
-    constexpr Range kGround{.low = 0, .high = 1, .advice = "the ground cannot reflect more than it receives"};
-    sky.ground_reflectance = object->number("ground_reflectance", kGround).value_or(sky.ground_reflectance);
+    sky.ground_reflectance = ground_of(*object);
     if (object->has("weather"))
       hour = hour_of_weather(root, *object, folder, series, at, warnings);
     else if (sky.model == SkyModel::perez)
-      hour = hour_of_keys(*object);
+      hour = ChosenHour{hour_of_keys(*object), {}, {}};
   }
 
   bool computed = false;
@@ -419,14 +348,13 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
 
   if (hour) {
     needs_sun(object->place("model") + (object->has("weather") ? " of a weather file" : " 'perez'"));
-    SkyMeasurement measured{.direct_normal = hour->direct_normal,
-                            .diffuse_horizontal = hour->diffuse_horizontal,
-                            .zenith_angle = std::acos(std::clamp(to_sun->z, -1.0, 1.0)),
-                            .day_of_year = std::nullopt,
-                            .precipitable_water = hour->precipitable_water};
-    if (at.time) measured.day_of_year = day_of_year(*at.time);
-    add_illuminances(*hour, measured, hour->line ? short_name(*object->word("weather")) : "", warnings);
-    sky.horizontal_irradiance = Spectrum(*hour->diffuse_horizontal_lux / kWhiteEfficacy);
+    const SkyMeasurement measured =
+        measurement_of(hour->light, *to_sun, at.time ? std::optional(day_of_year(*at.time)) : std::nullopt);
+    const std::string why = add_illuminances(hour->light, measured);
+    if (!why.empty() && hour->line)
+      warnings.push_back(
+          text(short_name(*object->word("weather")), ":", *hour->line, ": ", why, kDerivedFromRadiation));
+    sky.horizontal_irradiance = Spectrum(*hour->light.diffuse_horizontal_lux / kWhiteEfficacy);
     if (sky.model == SkyModel::perez) sky.shape = perez_shape(measured);
   }
   if (object && sky.model == SkyModel::image) {
@@ -458,7 +386,8 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
                             " is missing; a clear sun gives up to 100000 lx, ",
                             "0 only shows the sky where the sun stands"));
     }
-    add_sun(entries, entries.sun_irradiance.value_or(Spectrum(hour ? *hour->direct_normal_lux / kWhiteEfficacy : 0)),
+    add_sun(entries,
+            entries.sun_irradiance.value_or(Spectrum(hour ? *hour->light.direct_normal_lux / kWhiteEfficacy : 0)),
             *to_sun, computed, series != nullptr, file_name, lights, warnings);
     sun_used = true;
   }
@@ -510,6 +439,11 @@ Sky sky_of_option(std::string_view option) {
   }
   sky.horizontal_irradiance = Spectrum(lux / kWhiteEfficacy);
   return sky;
+}
+
+double read_ground(const JsonObject& root, const std::string& file_name) {
+  const std::optional<JsonObject> sky = sky_object(root, file_name);
+  return sky ? ground_of(*sky) : Sky{}.ground_reflectance;
 }
 
 }  // namespace clerestory

@@ -29,6 +29,10 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
                                          const std::filesystem::path& folder, ChannelCount& channels, LightSpec& lights,
                                          std::vector<std::string>& warnings, TimeOfSeries* series = nullptr);
 
+/// Of "sky" the reflectance of the ground alone, for light of all hours; the other keys are known or refused, and not
+/// looked at.
+double read_ground(const JsonObject& root, const std::string& file_name);
+
 /// The sky of --sky NAME[:LUX]; 10,000 lx unless it says otherwise. Skies that need no sun: uniform, cie-overcast, and
 /// cie-general-TYPE for types 1, 3, 5 and 16.
 Sky sky_of_option(std::string_view option);

@@ -36,9 +36,15 @@ struct Workspace {
   std::array<double, kMostMembers> share{};
 };
 
-void look_at_block(const LinkBlock& block, const PatchSet& patches, const ElementTree& tree,
-                   std::span<const SkyRadiance* const> skies, Workspace& work, Field& E) {
-  const auto channels = static_cast<std::size_t>(patches.channels), lanes = skies.size() * channels;
+/// Lanes that a view adds to.
+struct LaneRange {
+  std::size_t begin = 0, end = 0;
+};
+
+/// look(direction, passes, from_view): fills the lanes that it returns.
+template <class Look>
+void look_at_block(const LinkBlock& block, const ElementTree& tree, const PatchSet& patches, std::size_t lanes,
+                   const Look& look, Workspace& work, Field& E) {
   work.from_view.resize(lanes);
   std::size_t view = 0, shared = 0;
   for (const Receiver& r : block.receivers) {
@@ -46,20 +52,15 @@ void look_at_block(const LinkBlock& block, const PatchSet& patches, const Elemen
     if (r.hands_down) work.area.look_at(r, tree, patches);
     work.sum.assign(members * lanes, 0.0);
     for (const std::size_t last = view + r.views; view < last; ++view) {
-      const Vec3 d = direction_of(block.views[view]);
-      const Spectrum passes = passes_of(block.views[view]);
-      for (std::size_t s = 0; s < skies.size(); ++s) {
-        const Spectrum light = (*skies[s])(d)*passes;
-        for (std::size_t c = 0; c < channels; ++c) work.from_view[s * channels + c] = light[static_cast<int>(c)];
-      }
+      const LaneRange at = look(direction_of(block.views[view]), passes_of(block.views[view]), work.from_view);
       if (!r.hands_down) {
-        for (std::size_t l = 0; l < lanes; ++l) work.sum[l] += work.from_view[l];
+        for (std::size_t l = at.begin; l < at.end; ++l) work.sum[l] += work.from_view[l];
         continue;
       }
       const SharedView& way = block.shared_views[shared++];
       work.area.find_shares(unpack_direction(way.leaves), std::span(work.share).first(members));
       for (std::size_t m = 0; m < members; ++m)
-        for (std::size_t l = 0; l < lanes && (way.members >> m & 1) != 0; ++l)
+        for (std::size_t l = at.begin; l < at.end && (way.members >> m & 1) != 0; ++l)
           work.sum[m * lanes + l] += work.share[m] * work.from_view[l];
     }
     const double weight = std::numbers::pi * double{r.view_weight};
@@ -67,6 +68,17 @@ void look_at_block(const LinkBlock& block, const PatchSet& patches, const Elemen
       for (std::size_t l = 0; l < lanes; ++l)
         E.value[tree.patch[r.first_leaf + m] * lanes + l] = weight * work.sum[m * lanes + l];
   }
+}
+
+template <class Look>
+Field look_at_all(const PatchSet& patches, const ElementTree& tree, const Transport& transport, std::size_t lanes,
+                  const Look& look) {
+  Field E(patches.patch_count(), static_cast<int>(lanes));
+  parallel_for(transport.blocks.size(), 4, [&](std::size_t begin, std::size_t end) {
+    Workspace work;
+    for (std::size_t b = begin; b < end; ++b) look_at_block(transport.blocks[b], tree, patches, lanes, look, work, E);
+  });
+  return E;
 }
 
 }  // namespace
@@ -81,12 +93,29 @@ SkyView pack_sky_view(const Vec3& direction, const Spectrum& passes) {
 
 Field sky_irradiance(const PatchSet& patches, const ElementTree& tree, const Transport& transport,
                      std::span<const SkyRadiance* const> skies) {
-  Field E(patches.patch_count(), static_cast<int>(skies.size()) * patches.channels);
-  parallel_for(transport.blocks.size(), 4, [&](std::size_t begin, std::size_t end) {
-    Workspace work;
-    for (std::size_t b = begin; b < end; ++b) look_at_block(transport.blocks[b], patches, tree, skies, work, E);
-  });
-  return E;
+  const auto channels = static_cast<std::size_t>(patches.channels), lanes = skies.size() * channels;
+  return look_at_all(patches, tree, transport, lanes,
+                     [&](const Vec3& d, const Spectrum& passes, std::vector<double>& from_view) {
+                       for (std::size_t s = 0; s < skies.size(); ++s) {
+                         const Spectrum light = (*skies[s])(d)*passes;
+                         for (std::size_t c = 0; c < channels; ++c)
+                           from_view[s * channels + c] = light[static_cast<int>(c)];
+                       }
+                       return LaneRange{0, lanes};
+                     });
+}
+
+Field sky_irradiance_by_part(const PatchSet& patches, const ElementTree& tree, const Transport& transport,
+                             std::size_t parts, const std::function<std::size_t(const Vec3&)>& part_of) {
+  const auto channels = static_cast<std::size_t>(patches.channels);
+  return look_at_all(patches, tree, transport, parts * channels,
+                     [&](const Vec3& d, const Spectrum& passes, std::vector<double>& from_view) {
+                       const std::size_t part = part_of(d);
+                       if (part >= parts) return LaneRange{};
+                       for (std::size_t c = 0; c < channels; ++c)
+                         from_view[part * channels + c] = passes[static_cast<int>(c)];
+                       return LaneRange{part * channels, (part + 1) * channels};
+                     });
 }
 
 }  // namespace clerestory

@@ -34,19 +34,26 @@ bool has_only_a_number(std::string_view name) {
          name.find_first_not_of("0123456789", kRoom.size()) == name.npos;
 }
 
-}  // namespace
-
-std::vector<bool> inner_rooms(const WrittenResult& result) {
-  const std::vector<bool> is_open = open_air(result);
-  std::vector<bool> inner(result.rooms.size()), named(result.rooms.size());
+std::vector<bool> inner_of(const std::vector<std::string>& rooms, const std::vector<bool>& is_open) {
+  std::vector<bool> inner(rooms.size()), named(rooms.size());
   for (std::size_t k = 0; k < inner.size(); ++k) {
-    inner[k] = !is_open[k] && result.rooms[k] != kSmallerSpaces;
-    named[k] = inner[k] && !has_only_a_number(result.rooms[k]);
+    inner[k] = !is_open[k] && rooms[k] != kSmallerSpaces;
+    named[k] = inner[k] && !has_only_a_number(rooms[k]);
   }
   if (std::ranges::find(named, true) != named.end()) return named;
   if (std::ranges::find(inner, true) == inner.end())
-    for (std::size_t k = 0; k < inner.size(); ++k) inner[k] = result.rooms[k] != kOutdoors;
+    for (std::size_t k = 0; k < inner.size(); ++k) inner[k] = rooms[k] != kOutdoors;
   return inner;
+}
+
+}  // namespace
+
+std::vector<bool> inner_rooms(const WrittenResult& result) { return inner_of(result.rooms, open_air(result)); }
+
+std::vector<bool> inner_rooms(const std::vector<std::string>& rooms) {
+  std::vector<bool> is_open;
+  for (const std::string& name : rooms) is_open.push_back(name == kOutdoors);
+  return inner_of(rooms, is_open);
 }
 
 }  // namespace clerestory

@@ -1,6 +1,7 @@
 #pragma once
 // Which rooms of a result are rooms that people use.
 
+#include <string>
 #include <vector>
 
 #include "solver/model/written_result.h"
@@ -12,5 +13,7 @@ namespace clerestory {
 /// name rooms, none without such a name: those are cavities. Pictures and pages look past all these. Where no room is
 /// left, all but the outdoors are.
 std::vector<bool> inner_rooms(const WrittenResult& result);
+/// The same by their names alone.
+std::vector<bool> inner_rooms(const std::vector<std::string>& rooms);
 
 }  // namespace clerestory

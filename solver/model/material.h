@@ -16,6 +16,14 @@ enum class MaterialKind { diffuse, glass, diffuser, mirror };
 /// In the order of the enumerators.
 inline constexpr std::string_view kMaterialKindNames[] = {"diffuse", "glass", "diffuser", "mirror"};
 
+/// Blinds of a pane, that are closed where the sun dazzles.
+struct Blinds {
+  Spectrum transmittance{0.0};  ///< of the pane and the closed blinds, at normal incidence
+  std::string group;            ///< windows whose blinds close together
+
+  friend bool operator==(const Blinds&, const Blinds&) = default;
+};
+
 struct Material {
   std::string name;
   MaterialKind kind = MaterialKind::diffuse;
@@ -23,6 +31,7 @@ struct Material {
   Spectrum transmittance{0.0};          ///< of glass at normal incidence, each in [0, 1]; of a diffuser
   Spectrum exitance{0.0};               ///< M of each side [W/m2]
   std::optional<Spectrum> total_power;  ///< [W] shared over the sides that carry the material; replaces exitance
+  std::optional<Blinds> blinds{};       ///< of glass
   int sides = 2;                        ///< 1: the back (wound clockwise) is black and does not emit
   std::string group{};                  ///< of what glows: switched and dimmed together; may be empty
 

@@ -89,8 +89,11 @@ struct Scene {
   std::vector<Material> materials;    ///< by MaterialId
   std::vector<std::string> surfaces;  ///< names, by SurfaceId
   LightSpec lights;
+  double ground_reflectance = 0.2;   ///< of the virtual ground, where the scene was read for a year [1]
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
   std::vector<SceneTime> times;      ///< that `lights` are the mean of; empty: as they are
+  std::optional<Place> place;        ///< on earth, as the scene file says it
+  double north_deg = 0;              ///< of the scene's north, clockwise from +y, as the scene file says it
   std::vector<SensorSet> sensors;
   std::vector<NamedSpace> spaces;    ///< rooms that the models name
   std::vector<NamedSurfaces> rooms;  ///< that the scene file names

@@ -28,7 +28,8 @@ struct SensorSet {
   std::string name;
   std::vector<SensorPoint> points;
   SensorKind kind = SensorKind::planar;
-  std::optional<double> threshold{};  ///< illuminance that points should have [lx]
+  std::optional<double> threshold{};      ///< illuminance that points should have [lx]
+  std::optional<double> area_of_point{};  ///< that each stands for, of a grid [m2]
 };
 
 /// Planes around the axis of a cylindrical sensor, see solver/evaluate/sensor_planes.h.

@@ -70,6 +70,11 @@ enum Stream : std::uint64_t {
   kSlitGains = 0x95,
   kVariationProbe = 0xa1,
   kBfPairs = 0xb1,
+  // Points of the sun's disc, by hour of a year; what its error is measured with, by hour.
+  kSunOfHour = 0xe1,
+  kYearErrorPoints = 0xe2,
+  kYearErrorPaths = 0xe3,
+  kSunOnElements = 0xe4,
   // Panes that turn a ray back, by ray; and whether one of these is followed further.
   kPanesOfRay = 0x88,
   kEchoes = 0x89,

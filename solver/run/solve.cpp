@@ -114,7 +114,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
     return FieldOptions{.tolerance = of_level.vertex_tolerance,
                         .shortest_edge = shortest_edges(problem.patches, longest_edge, of_level, options),
                         .most_points = plan.most_points,
-                        .quality = of_level.vertices,
+                        .quality = around.vertices.value_or(of_level.vertices),
                         .coarser = coarser_than(level, &Effort::vertices),
                         .seed = options.seed};
   };
@@ -291,9 +291,9 @@ SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, 
 
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
                     const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around,
-                    std::span<const Layer> layers) {
+                    std::span<const Layer> layers, KeptTransport* keep) {
   UsedTransport used;
-  KeptTransport* const keep_links = options.check_laws ? &used.links : nullptr;
+  KeptTransport* const keep_links = options.check_laws ? &used.links : keep;
   FormFactorMatrix* const keep_matrix = options.check_laws ? &used.matrix : nullptr;
   constexpr double kShareToCheck = 0.1;  // of the time that is left
   const Monitor solving = options.check_laws ? monitor.within((1 - kShareToCheck) * monitor.seconds_left()) : monitor;

@@ -8,6 +8,7 @@
 
 #include "solver/illumination/problem.h"
 #include "solver/methods/form_factor_matrix.h"
+#include "solver/methods/kept_transport.h"
 #include "solver/methods/layered_field.h"
 #include "solver/model/hierarchy_debug.h"
 #include "solver/model/laws.h"
@@ -65,11 +66,15 @@ struct SolvedPatches {
 struct AroundSolve {
   std::span<const SensorPoint> sensors{};  ///< of irradiance_at_sensors(), by the same deadline
   double seconds_before = 0;               ///< to prepare the patches
+  /// What vertices are gathered with, where the caller gathers at them again and needs to know where they are; empty: as
+  /// the accuracy has it.
+  std::optional<GatherQuality> vertices{};
 };
 
 /// Solves by the method asked for, and shows the result at vertices.
 ///
 /// map           the lightmap of problem.patches.
+/// keep          null, or where the hierarchical method leaves its transport, where nothing stopped it.
 /// longest_edge  of the patches [m]; the hierarchical method halves them down to a share of it.
 /// debug         filled by the hierarchical method where it is asked for; nothing is computed for it otherwise.
 /// throws        InputError when the method needs more memory than there is, or cannot do what the scene has;
@@ -81,7 +86,7 @@ struct AroundSolve {
 /// that was so, Solution::stop tells. Threads: same bits for any thread count.
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
                     const Monitor& monitor = {}, HierarchyDebug* debug = nullptr, const AroundSolve& around = {},
-                    std::span<const Layer> layers = {});
+                    std::span<const Layer> layers = {}, KeptTransport* keep = nullptr);
 
 /// The first half of that for any method but the hierarchical one, which makes elements of its own: radiosity and
 /// irradiance of every patch.

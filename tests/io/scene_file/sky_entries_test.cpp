@@ -46,6 +46,15 @@ TEST_F(SkyEntries, TheSunStandsWherePlaceAndTimeSay) {
   EXPECT_EQ(all_warnings(scene).find("location"), std::string::npos) << all_warnings(scene);
 }
 
+TEST_F(SkyEntries, ASceneKeepsItsPlaceAndItsNorth) {
+  const Scene scene =
+      read_with(R"("location": { "latitude": 39.742476, "longitude": -105.1786, "timezone": -7, "north": 120 })");
+  ASSERT_TRUE(scene.place);
+  EXPECT_EQ(scene.place->longitude_deg, -105.1786);
+  EXPECT_EQ(scene.north_deg, 120);
+  EXPECT_FALSE(read_with(R"("location": { "north": 30 })").place);
+}
+
 TEST_F(SkyEntries, TheSunInForceIsToldByTheCompass) {
   const std::string north = R"("time": "2003-10-17T12:30:30",
       "location": { "latitude": 39.742476, "longitude": -105.1786, "timezone": -7, "north": 120 })";

@@ -1,0 +1,283 @@
+// clerestory annual: a scene and the weather of a year -> daylight figures on every vertex, sensor and room.
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/effective_settings.h"
+#include "apps/finish_report.h"
+#include "apps/run.h"
+#include "apps/solve_report.h"
+#include "io/annual/annual_report.h"
+#include "io/annual/honeybee_folder.h"
+#include "io/annual/hour_series.h"
+#include "io/as_written.h"
+#include "io/formats/weather_year.h"
+#include "io/read_schedule.h"
+#include "io/read_sensors.h"
+#include "io/write_result.h"
+#include "io/write_sensors.h"
+#include "pipeline/annual/solve_year.h"
+#include "pipeline/annual/year_report.h"
+#include "pipeline/collect_around.h"
+#include "pipeline/lap.h"
+#include "pipeline/wording.h"
+#include "solver/model/error.h"
+
+namespace clerestory {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  CommonArguments common;
+  SolveArguments solve;
+  ReadOptions read;
+  std::string input, output, weather, sensors, sensors_output, schedule = "8-18", hours, honeybee;
+  std::vector<double> thresholds;
+  std::optional<std::string> sky_parts;
+};
+
+fs::path beside(const std::string& output, const char* extension) {
+  return fs::path(output).replace_extension(extension);
+}
+fs::path sensors_output(const Arguments& arguments) {
+  return arguments.sensors_output.empty() ? beside(arguments.output, ".sensors.csv")
+                                          : fs::path(arguments.sensors_output);
+}
+
+/// Series of the hours as they come, into the places that were asked for.
+class SeriesOutputs {
+ public:
+  SeriesOutputs(const Arguments& arguments, const Scene& scene, const DaylightYear& year, Console& console)
+      : sensors_(all_sensor_points(scene.sensors)) {
+    std::vector<int> hours;
+    for (const DaylightHour& h : year.hours) hours.push_back(h.hour);
+    const std::vector<SeriesPoints> sets{{"sensors", sensors_}};
+    if (!arguments.hours.empty()) {
+      console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sets)) + " into " + arguments.hours);
+      hours_ = make_hour_series(arguments.hours, hours, sets);
+    }
+    if (!arguments.honeybee.empty()) {
+      std::vector<HoneybeeGrid> grids;
+      for (const SensorSet& set : scene.sensors) {
+        grids.push_back({set.name, set.points.size()});
+        ends_.push_back((ends_.empty() ? 0 : ends_.back()) + set.points.size());
+      }
+      honeybee_.emplace(arguments.honeybee, hours, std::move(grids));
+    }
+  }
+  bool any() const { return hours_ || honeybee_; }
+
+  void take(const YearSeries& s) {
+    if (!s.of_sensors) return;
+    if (hours_) hours_->add(0, s.total, s.direct);
+    const std::size_t H = s.total.size() / std::max<std::size_t>(s.end - s.begin, 1);
+    for (std::size_t begin = s.begin, end; begin < s.end && honeybee_; begin = end) {
+      const auto grid = static_cast<std::size_t>(std::ranges::upper_bound(ends_, begin) - ends_.begin());
+      end = std::min(s.end, ends_[grid]);
+      honeybee_->add(grid, 0, 0, s.total.subspan((begin - s.begin) * H, (end - begin) * H),
+                     s.direct.subspan((begin - s.begin) * H, (end - begin) * H));
+    }
+  }
+  void commit(const Scene& scene, const YearSolved& solved) {
+    if (hours_) hours_->commit();
+    if (!honeybee_) return;
+    std::vector<HoneybeeMetrics> metrics;
+    const std::vector<YearFigure> figures = year_figures(solved.rules);
+    std::size_t next = 0;
+    for (const SensorSet& set : scene.sensors) {
+      HoneybeeMetrics& m = metrics.emplace_back();
+      for (std::size_t k = 0; k < set.points.size(); ++k, ++next) {
+        std::vector<double>* const to[] = {&m.da, &m.cda, &m.udi_lower, &m.udi, &m.udi_upper};
+        for (std::size_t f = 0; f < std::size(to); ++f)
+          to[f]->push_back(figures[f](solved.of_sensors[next], solved.rules));
+      }
+    }
+    honeybee_->commit(metrics);
+  }
+
+ private:
+  std::vector<SensorPoint> sensors_;
+  std::vector<std::size_t> ends_;  ///< of the grids, among all sensors
+  std::unique_ptr<HourSeries> hours_;
+  std::optional<HoneybeeFolder> honeybee_;
+};
+
+/// Of what is asked, by the arguments.
+YearSettings year_settings(const Arguments& arguments, const Scene& scene, const Schedule& schedule) {
+  YearSettings settings;
+  settings.solve = effective_settings(arguments.common, arguments.solve, scene);
+  settings.is_occupied = schedule.occupied;
+  if (!arguments.thresholds.empty()) {
+    settings.threshold = arguments.thresholds.front();
+    settings.more_thresholds.assign(arguments.thresholds.begin() + 1, arguments.thresholds.end());
+  }
+  if (arguments.sky_parts) settings.sky_parts = std::stoul(*arguments.sky_parts);
+  return settings;
+}
+
+std::vector<Figure> as_figures(const Arguments& arguments, const YearSettings& asked, const YearSolved& solved) {
+  std::vector<Figure> out = as_figures(solved.solved.settings, solved.solved.patches.channels, arguments.read);
+  out.push_back({"weather", fs::path(arguments.weather).filename().string()});
+  out.push_back({"schedule", arguments.schedule});
+  out.push_back({"threshold", asked.threshold});
+  out.push_back({"sky_parts", static_cast<long long>(solved.sky_parts)});
+  out.push_back({"sun_positions", static_cast<long long>(solved.sun_nodes)});
+  return out;
+}
+
+RunReport::Error figures_of(const ErrorFigures& e) {
+  return {e.rms_relative, e.median_relative, e.p95_relative, e.samples, e.confidence, e.bound};
+}
+
+void write_outputs(const Arguments& arguments, const Scene& scene, const YearSolved& solved, const AnnualReport& annual,
+                   const RunReport& report, Outputs& outputs) {
+  WrittenResult result = as_written(solved.solved.patches, solved.solved.lightmap, solved.solved.solution,
+                                    collect_around(scene, solved.solved), {});
+  add_figures(solved, result);
+  write_result(outputs.open(arguments.output), result, report);
+  outputs.open(beside(arguments.output, ".json")).write(annual_json(annual));
+  if (solved.of_sensors.empty()) return;
+  std::vector<std::string> names;
+  std::vector<double> values;
+  const std::vector<YearFigure> figures = year_figures(solved.rules);
+  for (const YearFigure& figure : figures) names.push_back(figure.name);
+  for (const PointYear& point : solved.of_sensors)
+    for (const YearFigure& figure : figures) values.push_back(figure(point, solved.rules));
+  write_sensor_figures(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), names, values);
+}
+
+void warn_of_lamps(const Scene& scene, Console& console) {
+  const bool glows = std::ranges::any_of(scene.materials, [](const Material& m) { return m.emits(); });
+  if (!scene.lights.luminaires.empty() || glows)
+    console.note("the figures are of daylight alone: lamps and glowing surfaces of the scene are off");
+}
+
+void say_year(const YearSolved& solved, const AnnualReport& annual, const RunReport& report, Console& console) {
+  console.say(report.input + ": " + counted(report.counts.elements, "element") + ", " +
+              counted(report.counts.points, "point") + ", " + counted(solved.hours.size(), "hour") + " of light by " +
+              std::to_string(solved.sky_parts) + " parts of the sky and " + counted(solved.sun_nodes, "position") +
+              " of the sun");
+  for (const std::string& line : lines_of(annual)) console.say("  " + line);
+  const auto say_error = [&](const char* where, const std::optional<ErrorFigures>& e, const YearError& near_threshold) {
+    if (e)
+      console.say("  error   at " + std::string(where) + " in single hours " + (e->bound ? "below " : "") +
+                  percent(e->rms_relative) + " rms, 95 % of them within " + percent(e->p95_relative) +
+                  "; of what may be wrong about a threshold up to " + percent(near_threshold.total) + " (" +
+                  std::to_string(e->samples) + " paired with paths)");
+  };
+  say_error("sensors", solved.error_sensors, solved.error_of_sensors);
+  say_error("vertices", solved.error_points, solved.error_of_points);
+}
+
+ExitCode annual_command(const Arguments& arguments, Console& console) {
+  Lap lap;
+  RunReport report = new_report(arguments.input);
+  check_writable(arguments.output);
+  ReadOptions read = arguments.read;
+  read.for_a_year = true;
+  Scene scene = read_scene(arguments.input, read);
+  if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
+  const Schedule schedule = read_schedule(arguments.schedule);
+  const Weather weather = read_epw(arguments.weather);
+  console.has_read(scene.files);
+  const DaylightYear year =
+      daylight_year(weather, scene.place.value_or(weather.place), scene.north_deg, scene.ground_reflectance);
+  for (const std::string& line : year.warnings) console.warn(line);
+  warn_of_lamps(scene, console);
+  YearSettings settings = year_settings(arguments, scene, schedule);
+  if (all_sensor_points(scene.sensors).empty() && (!arguments.hours.empty() || !arguments.honeybee.empty()))
+    throw InputError(
+        std::string(arguments.hours.empty() ? "--honeybee" : "--hours") +
+        ": there are no sensors whose hours could be written; give --sensors POINTS.csv, or \"sensors\" in "
+        "the scene file.");
+  SeriesOutputs series(arguments, scene, year, console);
+  settings.keeps_all_hours = series.any();
+  lap.add_to(report.seconds.read);
+
+  const YearSolved solved =
+      solve_year(scene, year, settings, console,
+                 series.any() ? TakeSeries([&](const YearSeries& s) { series.take(s); }) : TakeSeries());
+  const AnnualReport annual = annual_report(scene, year, schedule.name, solved);
+  const double read_seconds = report.seconds.read;
+  fill_report(report, scene, solved.solved);
+  report.seconds.read = read_seconds;
+  report.settings = as_figures(arguments, settings, solved);
+  if (solved.error_sensors) report.error_sensors = figures_of(*solved.error_sensors);
+  if (solved.error_points) report.error = figures_of(*solved.error_points);
+  report.warnings = console.warnings();
+  Outputs outputs;
+  write_outputs(arguments, scene, solved, annual, report, outputs);
+  finish_report(report, arguments.common, console, outputs);
+  say_year(solved, annual, report, console);
+  series.commit(scene, solved);
+  console.commit(outputs);
+  console.say("  results " + arguments.output + ", " + beside(arguments.output, ".json").string() +
+              (solved.of_sensors.empty() ? "" : ", " + sensors_output(arguments).string()));
+  return kDone;
+}
+
+}  // namespace
+
+void add_annual_command(CLI::App& program, Task& task) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& command =
+      *program.add_subcommand("annual", "daylight of a year, hour by hour: DA, UDI, sDA, ASE, EN 17037");
+  add_input_options(command, arguments->input, arguments->read);
+  command.add_option("--weather", arguments->weather, "weather of a typical year")->type_name("CITY.epw")->required();
+  command
+      .add_option(
+          "-o,--output", arguments->output,
+          "figures on every vertex, for ParaView; rooms and grids go into OUT.json, sensors into OUT.sensors.csv")
+      ->type_name("OUT.vtp")
+      ->required();
+  require_extension(command, "--output", {".vtp"});
+  command.add_option("--schedule", arguments->schedule, "occupied hours of every day, or a file of 8,760 values")
+      ->type_name("8-18|FILE")
+      ->capture_default_str();
+  command
+      .add_option("--threshold", arguments->thresholds,
+                  "of daylight autonomy [lx]; hours at or above any further ones are counted, too (default: 300)")
+      ->type_name("LUX[,LUX...]")
+      ->delimiter(',')
+      ->expected(1, 1 + static_cast<int>(kMostThresholds))
+      ->check(CLI::PositiveNumber);
+  add_choice(command, "--sky-parts", arguments->sky_parts, {"145", "577", "2305"},
+             "parts of the sky (default: 145 for draft, 577 for standard, 2305 for fine)");
+  add_checked_word(command, "--accuracy", arguments->solve.accuracy, problem_with_accuracy,
+                   "draft, standard or fine (default: standard)");
+  command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")
+      ->type_name("POINTS.csv");
+  command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")
+      ->type_name("OUT.csv");
+  command
+      .add_option("--hours", arguments->hours, "illuminance of every sensor in every hour, as HDF5 or NumPy's files")
+      ->type_name("FILE.h5|DIR");
+  command.add_option("--honeybee", arguments->honeybee, "the same and its figures, as Ladybug Tools read them")
+      ->type_name("DIR");
+  add_positive_option(command, "--max-element", arguments->solve.max_element, "M",
+                      "longest element edge in metres (default: by accuracy and size)");
+  add_detail_option(command, arguments->solve.detail);
+  add_common_options(command, arguments->common);
+  command.footer("example: clerestory annual data/scenes/office.json --weather city.epw -o office_year.vtp");
+  command.callback([arguments, &task] {
+    task = [arguments] {
+      std::vector<NamedFile> files = {
+          {"--weather", arguments->weather, false},
+          {"--sensors", arguments->sensors, false},
+          {"-o", arguments->output},
+          {"rooms and grids", beside(arguments->output, ".json").string(), true, "name another -o"},
+          {"the sensors' output", sensors_output(*arguments).string(), true, "name another: --sensors-out"},
+          {"--hours", arguments->hours},
+          {"--honeybee", arguments->honeybee}};
+      return run(arguments->common, arguments->input, std::move(files),
+                 [&](Console& console) { return annual_command(*arguments, console); });
+    };
+  });
+}
+
+}  // namespace clerestory

@@ -1,0 +1,70 @@
+#pragma once
+// Scene and weather -> figures of a year at points, sensors and in rooms.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/observer.h"
+#include "pipeline/settings.h"
+#include "pipeline/solved.h"
+#include "solver/evaluate/annual_figures.h"
+#include "solver/evaluate/blinds.h"
+#include "solver/model/daylight_year.h"
+#include "solver/model/scene.h"
+
+namespace clerestory {
+
+/// What is asked of a year.
+struct YearSettings {
+  Settings solve;                         ///< method `hierarchical`
+  std::vector<std::uint8_t> is_occupied;  ///< by hour of the year, 8,760
+  double threshold = 300;                 ///< of DA, cDA and sDA [lx]
+  std::vector<double> more_thresholds{};  ///< whose hours are counted, too [lx]
+  std::optional<std::size_t> sky_parts;   ///< 145, 577 or 2305; empty: by accuracy
+  std::size_t part = 1, parts = 1;        ///< of the points, which part of how many is computed
+  bool keeps_all_hours = false;           ///< series are asked for of all hours with light, not just those that count
+};
+
+/// Takes series of points: of the sensors in order, then of the lightmap's points in order. Called from one thread.
+struct YearSeries {
+  bool of_sensors;
+  std::size_t begin, end;                ///< points
+  std::span<const float> total, direct;  ///< (end - begin) x H [lx]
+};
+using TakeSeries = std::function<void(const YearSeries&)>;
+
+/// A room (what faces up in it) or a grid of sensors.
+struct YearArea {
+  std::string name;
+  std::vector<std::size_t> points;   ///< of the lightmap, or sensors
+  std::vector<double> weight;        ///< area that each stands for [m2]; of sensors 1, where it is not known
+  std::vector<BlindsOfHour> blinds;  ///< H; empty without blinds
+  BlindsYear closed;
+  AreaYear figures;  ///< where all of its points are known
+};
+
+struct YearSolved {
+  Solved solved;  ///< elements, lightmap and solution of the mean light of the occupied hours
+  YearRules rules;
+  bool has_blinds = false;
+  std::vector<int> hours;  ///< H, of the year
+  std::size_t sky_parts = 0, sun_nodes = 0;
+  std::vector<PointYear> of_points, of_sensors;  ///< those of the part that was asked for; others have no hours
+  std::vector<YearArea> rooms, grids;
+  YearError error_of_points, error_of_sensors;              ///< that figures' low and high are of
+  std::optional<ErrorFigures> error_points, error_sensors;  ///< of illuminances in single hours
+};
+
+/// Daylight coefficients of all points, by one solve under the year's mean sky; each hour is a sum of them, with the
+/// sun by shadow rays of its own.
+///
+/// take  null, or told of every series.
+/// throws  InputError: no light, settings out of range.
+YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSettings& settings, Observer& observer,
+                      const TakeSeries& take = {});
+
+}  // namespace clerestory

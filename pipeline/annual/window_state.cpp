@@ -1,0 +1,95 @@
+#include "pipeline/annual/window_state.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "meshing/make_lightmap.h"
+#include "solver/illumination/place_lights.h"
+#include "solver/methods/hierarchical.h"
+#include "solver/model/units.h"
+#include "solver/paths/find_slit_gains.h"
+#include "solver/run/accuracy.h"
+
+namespace clerestory {
+namespace {
+
+/// Radiosity of the transport's elements under the sky that it was found with.
+Field radiosity(const KeptTransport& kept, const Lights& lights) {
+  Layer sky;
+  sky.sky = std::make_shared<const SkyRadiance>(lights);
+  return solve_for(kept, {&sky, 1}).B;
+}
+
+}  // namespace
+
+WindowState::WindowState(const Prepared& scene, KeptTransport kept, const StateOptions& how, const Monitor& monitor)
+    : problem_{elements_, scene.rays, scene.lights} {
+  B_ = radiosity(kept, scene.lights);
+  reflected_ = reflect_daylight(kept, scene.rays, how.coarse, how.nodes.direction, how.solve.seed, monitor);
+  elements_ = std::move(kept.elements);
+  kept = {};
+  light_ = std::make_unique<Illumination>(gather_illumination_by_slits(problem_, B_, {}, how.solve.seed, monitor));
+  scene_ = std::make_unique<YearScene>(
+      year_scene(*light_, how.fine, reflected_, how.year, how.hours, how.plan_reach, how.sun_rays, how.solve.seed));
+}
+
+WindowState::WindowState(std::unique_ptr<Prepared> scene, KeptTransport kept, const StateOptions& how,
+                         const Monitor& monitor)
+    : WindowState(*scene, std::move(kept), how, monitor) {
+  own_ = std::move(scene);
+}
+
+void WindowState::year_at(std::span<const PlacesOfPoint> points, const GatherPattern& pattern, std::span<float> total,
+                          std::span<float> direct) const {
+  RowSums sums(elements_.patch_count());
+  clerestory::year_at(*scene_, points, pattern, sums, total, direct);
+}
+
+void WindowState::sun_at(std::span<const PlacesOfPoint> points, std::span<float> direct) const {
+  std::fill(direct.begin(), direct.end(), 0.0f);
+  const std::size_t suns = scene_->suns.size(), H = scene_->year.hours;
+  std::vector<ReceivingPoint> places;
+  for (const PlacesOfPoint& point : points) places.insert(places.end(), point.at.begin(), point.at.end());
+  std::vector<float> factor(places.size() * suns);
+  sun_on_points(problem_.rays, places, scene_->suns, {}, factor);
+  std::size_t place = 0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (std::size_t k = 0; k < points[p].at.size(); ++k, ++place)
+      for (std::size_t s = 0; s < suns; ++s) {
+        const std::size_t h = scene_->hour_of_sun[s];
+        direct[p * H + h] +=
+            static_cast<float>(kWhiteEfficacy * points[p].weight[k]) * scene_->year.sun[h] * factor[place * suns + s];
+      }
+}
+
+std::vector<std::string> blind_groups(const std::vector<Material>& materials) {
+  std::vector<std::string> groups;
+  for (const Material& m : materials)
+    if (m.blinds && std::ranges::find(groups, m.blinds->group) == groups.end()) groups.push_back(m.blinds->group);
+  return groups;
+}
+
+void add_closed_states(const Scene& scene, const PreparedToSolve& open, const StateOptions& how, const Monitor& monitor,
+                       std::vector<std::unique_ptr<WindowState>>& states) {
+  for (const std::string& group : blind_groups(scene.materials)) {
+    PatchSet patches = open.scene.patches;
+    for (Material& m : patches.materials)
+      if (m.blinds && m.blinds->group == group) m.transmittance = m.blinds->transmittance;
+    RayScene rays(patches);
+    auto closed = std::make_unique<Prepared>(Prepared{std::move(patches), open.scene.repairs, std::move(rays), {}, {}});
+    closed->lights = place_lights(scene.lights, closed->patches, closed->rays);
+    const Effort e = effort(how.solve.accuracy, how.solve.tighten);
+    HierarchyOptions options;
+    options.bundle_rays = e.bundle_rays, options.bright_rays = e.bright_rays;
+    options.tolerance = e.element_tolerance;
+    options.shortest_edge = e.shortest_edge * open.scene.repairs.max_element;
+    options.seed = how.solve.seed;
+    KeptTransport kept;
+    options.keep = &kept;
+    ElementMesh mesh(closed->patches, make_lightmap(closed->patches));
+    hierarchical(closed->problem(), mesh, options, monitor);
+    states.push_back(std::make_unique<WindowState>(std::move(closed), std::move(kept), how, monitor));
+  }
+}
+
+}  // namespace clerestory

@@ -1,0 +1,121 @@
+#include "pipeline/annual/year_areas.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "solver/model/inner_rooms.h"
+#include "solver/model/parallel.h"
+
+namespace clerestory {
+namespace {
+
+const double kFacesUp = std::cos(25 * std::numbers::pi / 180);
+
+void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::span<const PlacesOfPoint> points,
+                const YearRules& rules, YearArea& area) {
+  const std::size_t H = states.front()->year().hours, n = area.points.size();
+  std::vector<PlacesOfPoint> own;
+  for (const std::size_t p : area.points) own.push_back(points[p]);
+  std::vector<std::vector<float>> sun(states.size(), std::vector<float>(n * H));
+  parallel_for((n + 31) / 32, 1, [&](std::size_t from, std::size_t to) {
+    const std::size_t begin = 32 * from, count = std::min(32 * to, n) - begin;
+    for (std::size_t g = 0; g < states.size(); ++g)
+      states[g]->sun_at(std::span(own).subspan(begin, count), std::span(sun[g]).subspan(begin * H, count * H));
+  });
+  area.blinds.resize(H);
+  std::vector<std::vector<float>> taken(states.size() - 1, std::vector<float>(n));
+  std::vector<float> steady(n);
+  std::vector<WindowGroup> groups;
+  for (const std::vector<float>& by_group : taken) groups.push_back({by_group, 0});
+  for (std::size_t h = 0; h < H; ++h) {
+    bool any = false;
+    for (std::size_t p = 0; p < n; ++p) {
+      steady[p] = sun[0][p * H + h];
+      any = any || steady[p] >= kSunLux;
+      for (std::size_t g = 0; g < taken.size(); ++g) {
+        taken[g][p] = std::max(0.0f, sun[0][p * H + h] - sun[g + 1][p * H + h]);
+        steady[p] -= taken[g][p];
+      }
+      steady[p] = std::max(0.0f, steady[p]);
+    }
+    if (!any) continue;
+    area.blinds[h] = close_blinds(groups, steady);
+    if (rules.occupied[h] > 0) add_hour(area.blinds[h], area.closed);
+  }
+}
+
+}  // namespace
+
+std::vector<YearArea> rooms_facing_up(const PatchSet& patches, const VertexLightmap& map) {
+  const std::vector<bool> inner = inner_rooms(patches.rooms);
+  std::vector<std::map<std::size_t, double>> weight(patches.rooms.size());
+  for (std::size_t i = 0; i < patches.patch_count() && !patches.room.empty(); ++i)
+    if (inner[patches.room[i]] && patches.normal[i].z >= kFacesUp)
+      for (const std::uint32_t p : map.corners[i]) weight[patches.room[i]][p] += patches.area[i] / 3;
+  std::vector<YearArea> rooms;
+  for (std::size_t r = 0; r < weight.size(); ++r) {
+    if (weight[r].empty()) continue;
+    YearArea& room = rooms.emplace_back();
+    room.name = patches.rooms[r];
+    for (const auto& [point, area] : weight[r]) room.points.push_back(point), room.weight.push_back(area);
+  }
+  return rooms;
+}
+
+std::vector<std::uint32_t> room_of_points(const PatchSet& patches, const VertexLightmap& map,
+                                          const std::vector<YearArea>& rooms) {
+  std::vector<std::uint32_t> of(map.position.size(), static_cast<std::uint32_t>(rooms.size()));
+  if (patches.room.empty()) return of;
+  for (std::size_t p = 0; p < of.size(); ++p) {
+    const std::string& name = patches.rooms[patches.room[map.patch_of_point[p]]];
+    of[p] = static_cast<std::uint32_t>(std::ranges::find(rooms, name, &YearArea::name) - rooms.begin());
+  }
+  return of;
+}
+
+std::vector<YearArea> grids_of(const std::vector<SensorSet>& sets) {
+  std::vector<YearArea> grids;
+  std::size_t next = 0;
+  for (const SensorSet& set : sets) {
+    YearArea& grid = grids.emplace_back();
+    grid.name = set.name;
+    for (std::size_t k = 0; k < set.points.size(); ++k) {
+      grid.points.push_back(next++);
+      grid.weight.push_back(set.area_of_point.value_or(1));
+    }
+  }
+  return grids;
+}
+
+std::vector<std::uint32_t> set_of_sensors(const std::vector<SensorSet>& sets) {
+  std::vector<std::uint32_t> of;
+  for (std::uint32_t s = 0; s < sets.size(); ++s) of.insert(of.end(), sets[s].points.size(), s);
+  return of;
+}
+
+void operate_blinds(const std::vector<std::unique_ptr<WindowState>>& states, std::span<const PlacesOfPoint> points,
+                    const YearRules& rules, const Monitor& monitor, std::vector<YearArea>& areas) {
+  for (std::size_t k = 0; k < areas.size(); ++k) {
+    monitor.report("blinds", static_cast<double>(k) / static_cast<double>(areas.size()));
+    operate_in(states, points, rules, areas[k]);
+  }
+}
+
+void add_up(YearSolved& year) {
+  const auto add = [&](std::vector<YearArea>& areas, const std::vector<PointYear>& of) {
+    for (YearArea& area : areas) {
+      std::vector<PointYear> points;
+      for (const std::size_t p : area.points) points.push_back(of[p]);
+      if (!points.empty()) area.figures = area_year(points, area.weight, year.rules);
+    }
+  };
+  add(year.rooms, year.of_points);
+  add(year.grids, year.of_sensors);
+}
+
+}  // namespace clerestory

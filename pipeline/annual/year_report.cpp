@@ -1,0 +1,71 @@
+#include "pipeline/annual/year_report.h"
+
+#include <cmath>
+
+#include "pipeline/wording.h"
+
+namespace clerestory {
+namespace {
+
+std::vector<AreaOfYear> told(const std::vector<YearArea>& areas) {
+  std::vector<AreaOfYear> out;
+  for (const YearArea& area : areas) out.push_back({area.name, area.points.size(), area.figures, area.closed});
+  return out;
+}
+
+/// "62 %", or "62 % (58 to 66 %)" where the error of the illuminances leaves that open.
+std::string words(const ShareWithin& share) {
+  const auto figure = [](double x) { return rounded(std::round(10 * x) / 10, 3); };
+  if (figure(share.low) == figure(share.high)) return figure(share.value) + " %";
+  return figure(share.value) + " % (" + figure(share.low) + " to " + figure(share.high) + " %)";
+}
+
+std::string line_of(const AreaOfYear& area, const AnnualReport& report) {
+  const AreaYear& year = area.year;
+  std::string line = area.name + ": sDA " + rounded(report.threshold) + "/50 % " + words(year.sDA) +
+                     ", ASE 1000,250 h " + words(year.ASE_more_than);
+  if (year.ASE_at_least.value != year.ASE_more_than.value)
+    line += " (" + words(year.ASE_at_least) + " with 250 h or more)";
+  line += ", EN 17037 " + std::string(kEn17037LevelNames[static_cast<std::size_t>(year.level)]) + ", mean " +
+          rounded(year.mean) + " lx";
+  if (area.blinds.hours_closed > 0) line += ", blinds closed in " + std::to_string(area.blinds.hours_closed) + " h";
+  if (area.blinds.hours_not_complying > 0)
+    line += " and still too much sun in " + std::to_string(area.blinds.hours_not_complying) + " h";
+  return line;
+}
+
+}  // namespace
+
+AnnualReport annual_report(const Scene& scene, const DaylightYear& year, const std::string& schedule,
+                           const YearSolved& solved) {
+  AnnualReport report;
+  report.scene = scene.file, report.weather = year.file, report.city = year.city;
+  report.latitude_deg = year.place.latitude_deg, report.longitude_deg = year.place.longitude_deg;
+  report.timezone = year.place.timezone;
+  report.schedule = schedule, report.occupied_hours = solved.rules.occupied_hours;
+  report.lit_hours = static_cast<int>(year.hours.size()), report.missing_hours = year.missing_hours;
+  report.threshold = solved.rules.threshold;
+  report.blinds_operated = solved.has_blinds;
+  report.error_rooms = solved.error_of_points, report.error_grids = solved.error_of_sensors;
+  report.rooms = told(solved.rooms), report.grids = told(solved.grids);
+  return report;
+}
+
+void add_figures(const YearSolved& solved, WrittenResult& result) {
+  for (const YearFigure& figure : year_figures(solved.rules)) {
+    WrittenArray& of_points = result.of_points[figure.name];
+    for (const PointYear& p : solved.of_points) of_points.value.push_back(static_cast<float>(figure(p, solved.rules)));
+    WrittenArray& of_cells = result.of_cells[figure.name];
+    for (const auto& c : result.triangles)
+      of_cells.value.push_back((of_points.value[c[0]] + of_points.value[c[1]] + of_points.value[c[2]]) / 3);
+  }
+}
+
+std::vector<std::string> lines_of(const AnnualReport& report) {
+  std::vector<std::string> lines;
+  for (const auto* areas : {&report.rooms, &report.grids})
+    for (const AreaOfYear& area : *areas) lines.push_back(line_of(area, report));
+  return lines;
+}
+
+}  // namespace clerestory

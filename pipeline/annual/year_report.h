@@ -1,0 +1,23 @@
+#pragma once
+// A solved year as what is written and said of it.
+
+#include <string>
+#include <vector>
+
+#include "pipeline/annual/solve_year.h"
+#include "solver/model/annual.h"
+#include "solver/model/written_result.h"
+
+namespace clerestory {
+
+/// schedule  as it was asked for.
+AnnualReport annual_report(const Scene& scene, const DaylightYear& year, const std::string& schedule,
+                           const YearSolved& solved);
+
+/// Figures as arrays of points, and of cells the mean of their corners; names as year_figures() has them.
+void add_figures(const YearSolved& solved, WrittenResult& result);
+
+/// A line for each room and grid: "room 1: sDA 62 % (58 to 66 %), ASE 8.1 %, ..."
+std::vector<std::string> lines_of(const AnnualReport& report);
+
+}  // namespace clerestory

@@ -1,0 +1,115 @@
+#include "solver/annual/reflected_daylight.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "solver/hierarchy/sky_views.h"
+#include "solver/illumination/find_images.h"
+#include "solver/illumination/illumination.h"
+#include "solver/model/assert.h"
+#include "solver/model/parallel.h"
+#include "solver/model/units.h"
+#include "solver/sampling/packed_direction.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t kAtOnce = 32;  ///< lanes, times channels: what is in double meanwhile
+constexpr double kResidual = 1e-4;   ///< of each lane; sums of lanes are no worse
+
+/// Straight from parts first, first + 1, ... of the sky, N x (count x channels).
+Field straight_from_sky(const KeptTransport& kept, const SkyParts& parts, std::size_t first, std::size_t count) {
+  const auto lane_of = [&](const Vec3& d) {
+    const std::size_t part = parts.part_of(d);
+    return part >= first ? part - first : count;
+  };
+  Field E = sky_irradiance_by_part(kept.elements, kept.tree, kept.transport, count, lane_of);
+  const int channels = kept.elements.channels;
+  parallel_for(E.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const RowEntry& e : kept.direct.rows[i]) {
+        if (!e.is_of_sky()) continue;
+        const std::size_t lane = lane_of(unpack_direction(e.number()));
+        for (int c = 0; c < channels && lane < count; ++c)
+          E.at(i, static_cast<int>(lane) * channels + c) += double{e.weight[static_cast<std::size_t>(c)]};
+      }
+  });
+  return E;
+}
+
+/// Straight from the sun at each node, and over mirrors and panes, N x (nodes x channels).
+Field straight_from_suns(const KeptTransport& kept, const RayScene& rays, std::span<const Vec3> nodes,
+                         std::uint64_t seed, const Monitor& monitor, std::vector<std::vector<MirrorWay>>& ways) {
+  Lights suns;
+  std::vector<std::size_t> node_of_sun;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    Lights one;
+    one.suns.push_back({Sun{nodes[k], Spectrum(1.0)}});
+    add_images(one, kept.elements, rays);
+    std::vector<MirrorWay>& own = ways.emplace_back();
+    for (PlacedSun& sun : one.suns) {
+      if (sun.is_image()) own.push_back(sun.way);
+      suns.suns.push_back(std::move(sun));
+      node_of_sun.push_back(k);
+    }
+  }
+  std::vector<Layer> layers(nodes.size());
+  for (Layer& layer : layers) layer.lights.resize(suns.suns.size());
+  for (std::size_t k = 0; k < node_of_sun.size(); ++k) layers[node_of_sun[k]].lights[k] = Spectrum(1.0);
+  const Problem problem{kept.elements, rays, suns};
+  DirectRows rows;
+  direct_light(Illumination(problem), {.shadow_rays = 8, .edge_rays = 16, .sky_rays = 0, .seed = seed}, monitor, &rows);
+  return direct_layers(kept.elements, rows, layers).delta_light;
+}
+
+/// Of nodes first, first + 1, ..., whose direct irradiance is E and radiosity B.
+void add_flux_of_suns(const PatchSet& elements, const Field& E, const Field& B, std::size_t first, std::size_t nodes,
+                      ReflectedDaylight& out) {
+  const std::size_t count = static_cast<std::size_t>(E.channels / elements.channels);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Field E_of_node = one_layer(E, k, elements.channels), B_of_node = one_layer(B, k, elements.channels);
+    for (std::size_t i = 0; i < elements.patch_count(); ++i) {
+      const std::size_t at = elements.room_of(i) * nodes + first + k;
+      out.first_flux[at] += elements.area[i] * luminous_mean(elements.scattered(E_of_node, i));
+      out.all_flux[at] += elements.area[i] * luminous_mean(B_of_node[i]);
+      if (!E_of_node[i].is_black()) out.sunlit[i] = true;
+    }
+  }
+}
+
+}  // namespace
+
+ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& rays, const SkyParts& parts,
+                                   std::span<const Vec3> nodes, std::uint64_t seed, const Monitor& monitor) {
+  CLERESTORY_ASSERT(kept.complete, ==, true);
+  const PatchSet& elements = kept.elements;
+  const auto channels = static_cast<std::size_t>(elements.channels);
+  const std::size_t n = elements.patch_count(), sky = parts.count() + 1, at_once = kAtOnce / channels;
+  ReflectedDaylight out;
+  out.lanes = sky + nodes.size(), out.channels = elements.channels;
+  out.B.resize(n * channels * out.lanes);
+  out.first_flux.resize(elements.room_count() * nodes.size());
+  out.all_flux.resize(out.first_flux.size());
+  out.sunlit.resize(n);
+  for (std::size_t first = 0, count; first < out.lanes; first += count) {
+    monitor.report("reflected", static_cast<double>(first) / static_cast<double>(out.lanes));
+    if (monitor.should_stop()) {
+      out.complete = false;
+      return out;
+    }
+    count = std::min(at_once, (first < sky ? sky : out.lanes) - first);
+    const Field E =
+        first < sky ? straight_from_sky(kept, parts, first, count)
+                    : straight_from_suns(kept, rays, nodes.subspan(first - sky, count), seed, monitor, out.sun_ways);
+    const Balanced s = balance(elements, kept.tree, kept.transport, Field(n, E.channels), E, {}, kResidual, monitor);
+    if (first >= sky) add_flux_of_suns(elements, E, s.B, first - sky, nodes.size(), out);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t c = 0; c < channels; ++c)
+          out.B[(i * channels + c) * out.lanes + first + k] =
+              static_cast<float>(s.B.value[(i * count + k) * channels + c]);
+  }
+  return out;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,82 @@
+#include "solver/annual/sun_on_points.h"
+
+#include <algorithm>
+
+#include "solver/illumination/image_beams.h"
+#include "solver/lights/sun.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
+#include "solver/model/units.h"
+#include "solver/visibility/shadow_rays.h"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t kPilots = 2;
+
+/// What of the sun's image comes to a point over mirrors and panes, by one ray.
+double over_mirrors(const RayScene& rays, const ReceivingPoint& at, const PlacedSun& image) {
+  const double cosine = dot(at.n, image.direction);
+  if (!(cosine > 0) || !may_reach(rays, image, {&at.p, 1})) return 0;
+  return cosine *
+         luminous_mean(rays.transmittance_by_mirrors(at.p, at.p + image.direction * (4 * rays.diameter()), image.way));
+}
+
+}  // namespace
+
+SunOfHour::SunOfHour(const Vec3& to_sun, std::span<const MirrorWay> over, std::size_t rays, std::uint64_t key)
+    : direction(to_sun), ways(over) {
+  for (std::size_t k = 0; k < kPilots + rays; ++k) {
+    const auto u = sobol4(static_cast<std::uint32_t>(k), key);
+    (k < kPilots ? pilots : more).push_back(direction_to_sun({to_sun, Spectrum(1.0)}, u[0], u[1]));
+  }
+}
+
+void sun_on_points(const RayScene& rays, std::span<const ReceivingPoint> points, std::span<const SunOfHour> suns,
+                   const std::vector<bool>& may_come, std::span<float> out) {
+  struct Load {
+    std::uint32_t point;
+    float cosine;
+  };
+  std::vector<double> sum(points.size());
+  std::vector<std::uint32_t> lit(points.size()), sent(points.size());
+  auto shadows = shadow_rays<Load>(rays, [&](const Load& load, const Spectrum& passes) {
+    sum[load.point] += double{load.cosine} * luminous_mean(passes);
+    ++lit[load.point];
+  });
+  const double far = 4 * rays.diameter();
+  const auto send = [&](std::size_t i, const Vec3& d) {
+    const double cosine = dot(points[i].n, d);
+    if (!(cosine > 0)) return;
+    shadows.send(points[i].p, points[i].p + d * far, {static_cast<std::uint32_t>(i), static_cast<float>(cosine)});
+    ++sent[i];
+  };
+  std::fill(out.begin(), out.end(), 0.0f);
+  std::vector<std::size_t> looking;
+  for (std::size_t h = 0; h < suns.size(); ++h) {
+    looking.clear();
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (may_come.empty() || may_come[i * suns.size() + h]) looking.push_back(i), sum[i] = 0, lit[i] = sent[i] = 0;
+    for (const Vec3& d : suns[h].pilots)
+      for (const std::size_t i : looking) send(i, d);
+    shadows.trace();
+    for (const std::size_t i : looking) {
+      double share = sum[i] / static_cast<double>(suns[h].pilots.size());
+      if (!suns[h].more.empty() && lit[i] > 0 && lit[i] < sent[i]) {
+        sum[i] = 0;
+        for (const Vec3& d : suns[h].more) send(i, d);
+        shadows.trace();
+        share = sum[i] / static_cast<double>(suns[h].more.size());
+      }
+      for (const MirrorWay& way : suns[h].ways) {
+        PlacedSun image{Sun{suns[h].direction, Spectrum(1.0)}, way};
+        for (std::size_t k = 0; k < way.count; ++k)
+          image.direction = rays.mirrors()[way.plane[k]].image_of_direction(image.direction);
+        share += over_mirrors(rays, points[i], image);
+      }
+      out[i * suns.size() + h] = static_cast<float>(share);
+    }
+  }
+}
+
+}  // namespace clerestory

@@ -9,18 +9,19 @@ Options behind -- go to clerestory annual:  ... -- --accuracy fine --schedule 9-
 """
 
 import argparse
+import os
 import pathlib
 import subprocess
+import sys
 
 from distributed import Client
 
 
-def run(words):
-    """Runs the program; what it says of a failure becomes that of the task."""
-    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+def run(words, folder):
+    """Runs the program there; what it says of a failure becomes that of the task."""
+    done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         raise RuntimeError(f"{' '.join(words)}: exit code {done.returncode}: {done.stderr.strip()[-1000:]}")
-    return words[words.index("-o") + 1]
 
 
 def main():
@@ -30,8 +31,9 @@ def main():
     parser.add_argument("-o", "--output", required=True)
     parser.add_argument("--parts", type=int, default=8)
     parser.add_argument("--scheduler", help="address of the cluster (default: this computer)")
-    parser.add_argument("options", nargs="*", help="for clerestory annual, behind --")
-    asked = parser.parse_args()
+    words = sys.argv[1:]
+    own = words.index("--") if "--" in words else len(words)
+    asked = parser.parse_args(words[:own])
 
     output = pathlib.Path(asked.output).resolve()
     files = [str(output.with_suffix(f".part_{i}.vtp")) for i in range(1, asked.parts + 1)]
@@ -43,14 +45,15 @@ def main():
                 run,
                 ["clerestory", "annual", asked.scene, "--weather", asked.weather, "--part", f"{i}/{asked.parts}"]
                 + ["-o", file, "--threads", "1", "--quiet"]
-                + asked.options,
+                + words[own + 1 :],
+                os.getcwd(),
                 key=f"part {i} of {asked.parts} of {output}",
                 retries=2,
                 pure=False,
             )
             for i, file in enumerate(files, 1)
         ]
-        client.gather(tasks)
+        client.gather(tasks)  # raises what a part failed with
     subprocess.run(["clerestory", "merge", *files, "-o", str(output)], check=True)
 
 

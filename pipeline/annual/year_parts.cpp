@@ -50,7 +50,7 @@ void restore_surfaces(const WrittenResult& result, const YearPart& part, Solved&
     patches.triangle.push_back(TriangleId{i});
     patches.side.push_back(kFront);
     patches.area.push_back(result.of_cells.at("area").value[i]);
-    patches.level.push_back(static_cast<std::uint8_t>(result.of_cells.at("level").value[i]));
+    patches.level.push_back(static_cast<std::uint8_t>(std::clamp(result.of_cells.at("level").value[i], 0.0f, 255.0f)));
   }
   patches.rho = part.rho, patches.tau = part.tau;
   patches.M = Field(N, patches.channels);  // by daylight alone

@@ -1,5 +1,7 @@
 // A year in parts: the same bytes as one run, after a kill too, and what merge refuses.
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -154,6 +156,50 @@ TEST_F(YearInParts, AKilledPartIsRunAgainAloneByTheScriptsForSlurm) {
   const ProgramRun merged = Program("/bin/sh", {"-c", merging}).wait();
   ASSERT_EQ(merged.exit_code, 0) << merged.err;
   expect_whole("from_cluster");
+}
+
+/// What a job's container runs: the one argument of its shell.
+std::string line_of_job(const std::string& file) {
+  const std::string job = read_text(CLERESTORY_SOURCE_DIR "/data/cluster/" + file);
+  const std::size_t begin = job.find("- exec "), end = job.find("resources:");
+  if (begin > end || end == job.npos) return "exit 99";
+  std::string line = job.substr(begin + 2, end - begin - 2);
+  std::ranges::replace(line, '\n', ' ');
+  return line;
+}
+
+TEST_F(YearInParts, TheJobsForKubernetesMakeTheSameYear) {
+  const std::string volume = in_folder("volume");
+  std::filesystem::create_directory(volume);
+  for (const auto& [from, to] :
+       {std::pair("room.json", "office.json"), {"room.obj", "room.obj"}, {"year.epw", "city.epw"}})
+    std::filesystem::copy_file(in_folder(from), volume + "/" + to);
+  std::string how;
+  for (const char* word : kHow) how += std::string(" ") + word;
+  const auto pod = [&](const std::string& index, const std::string& file, const std::string& more) {
+    std::string line = line_of_job(file);
+    line.erase(0, std::string("exec ").size());  // a function stands for the program
+    const ProgramRun run =
+        Program("/bin/sh", {"-c", "more='" + more + "'; JOB_COMPLETION_INDEX=" + index + "; IFS=' '; cd " + volume +
+                                      "; PARTS=2; clerestory() { " CLERESTORY_PROGRAM " \"$@\" $more; }; " + line})
+            .wait();
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  };
+  for (const char* index : {"0", "1"}) pod(index, "kubernetes_parts.yaml", how);
+  pod("", "kubernetes_merge.yaml", "");
+  whole();
+  EXPECT_EQ(read_text(volume + "/year.sensors.csv"), read_text(in_folder("whole.sensors.csv")));
+}
+
+TEST_F(YearInParts, ByDaskIsTheSameYear) {
+  if (std::system("python3 -c 'import distributed' 2>/dev/null") != 0) GTEST_SKIP() << "Dask is not installed";
+  std::string line =
+      "PATH=$(dirname " CLERESTORY_PROGRAM "):$PATH python3 " CLERESTORY_SOURCE_DIR "/data/cluster/dask_year.py " +
+      in_folder("room.json") + " " + in_folder("year.epw") + " --parts 2 -o " + in_folder("by_dask.vtp") + " --";
+  for (const char* word : kHow) line += std::string(" ") + word;
+  const ProgramRun run = Program("/bin/sh", {"-c", line}).wait();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  expect_whole("by_dask");
 }
 
 TEST_F(YearInParts, MergeNamesWhatIsMissingOrThereTwice) {

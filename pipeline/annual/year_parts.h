@@ -1,7 +1,6 @@
 #pragma once
 // A year in parts: what each leaves, and all of them put together again.
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -23,6 +23,7 @@ void add_formfactors_command(CLI::App& program, Task& task);
 void add_tradeoff_command(CLI::App& program, Task& task);
 void add_report_command(CLI::App& program, Task& task);
 void add_annual_command(CLI::App& program, Task& task);
+void add_merge_command(CLI::App& program, Task& task);
 void add_render_command(CLI::App& program, Task& task);
 
 }  // namespace clerestory

@@ -163,10 +163,15 @@ void say_year(const YearSolved& solved, const AnnualReport& annual, const RunRep
               std::to_string(solved.sky_parts) + " parts of the sky and " + counted(solved.sun_nodes, "position") +
               " of the sun");
   for (const std::string& line : lines_of(annual)) console.say("  " + line);
-  if (const auto& e = solved.error_sensors ? solved.error_sensors : solved.error_points)
-    console.say("  error   of single hours " + std::string(e->bound ? "below " : "") + percent(e->rms_relative) +
-                " rms, 95 % of them within " + percent(e->p95_relative) + "; of what is near a threshold up to " +
-                percent(solved.error.total) + ", measured at " + counted(e->samples, "point and hour"));
+  const auto say_error = [&](const char* where, const std::optional<ErrorFigures>& e, const YearError& near_threshold) {
+    if (e)
+      console.say("  error   at " + std::string(where) + " in single hours " + (e->bound ? "below " : "") +
+                  percent(e->rms_relative) + " rms, 95 % of them within " + percent(e->p95_relative) +
+                  "; of what may be wrong about a threshold up to " + percent(near_threshold.total) + " (" +
+                  std::to_string(e->samples) + " paired with paths)");
+  };
+  say_error("sensors", solved.error_sensors, solved.error_of_sensors);
+  say_error("vertices", solved.error_points, solved.error_of_points);
 }
 
 ExitCode annual_command(const Arguments& arguments, Console& console) {

@@ -53,6 +53,8 @@ Json json_of(const AreaOfYear& area, bool is_300_lux) {
   return json;
 }
 
+Json json_of(const YearError& error) { return {{"total", error.total}, {"direct", error.direct}}; }
+
 Json rules_of(const AnnualReport& report) {
   const std::string blinds = report.blinds_operated ? "; blinds operated" : "";
   return {
@@ -87,7 +89,7 @@ std::string annual_json(const AnnualReport& report) {
                  {"hours_missing", report.missing_hours}}},
                {"schedule", {{"name", report.schedule}, {"occupied_hours", report.occupied_hours}}},
                {"threshold", report.threshold},
-               {"illuminance_error", {{"total", report.error_total}, {"direct", report.error_direct}}},
+               {"illuminance_error", {{"rooms", json_of(report.error_rooms)}, {"grids", json_of(report.error_grids)}}},
                {"rules", rules_of(report)},
                {"rooms", Json::array()},
                {"grids", Json::array()}};

@@ -87,9 +87,10 @@ std::vector<PlacesOfPoint> places_of(const SensorPlanes& sensors, const Vec3& or
   return points;
 }
 
-/// Part `part` of n things in `parts`.
+/// Part `part` of n things in `parts`: whole blocks, whose points share what they look at.
 std::pair<std::size_t, std::size_t> range_of_part(std::size_t n, std::size_t part, std::size_t parts) {
-  return {n * (part - 1) / parts, n * part / parts};
+  const std::size_t blocks = (n + kBlock - 1) / kBlock;
+  return {std::min(n, blocks * (part - 1) / parts * kBlock), std::min(n, blocks * part / parts * kBlock)};
 }
 
 /// Light of the points with blinds as the rooms have them, from that of each state of the windows.
@@ -230,8 +231,9 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   if (!prepared) return out;
   warn_about_places(prepared->scene.problem(), shown, sensors, observer);
   KeptTransport kept;
-  SolvedPatches solved = solve(prepared->scene.problem(), std::move(prepared->lightmap),
-                               prepared->scene.repairs.max_element, solving.solve, monitor, nullptr, {}, {}, &kept);
+  SolvedPatches solved =
+      solve(prepared->scene.problem(), std::move(prepared->lightmap), prepared->scene.repairs.max_element,
+            solving.solve, monitor, nullptr, {.vertices = effort(Accuracy::draft).vertices}, {}, &kept);
   out.solved.panes = panes_of(prepared->scene.patches);
   out.solved.settings = solving;
   out.solved.repairs = prepared->scene.repairs;
@@ -240,7 +242,8 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   out.solved.solution = std::move(solved.solution);
 
   // Windows open, and closed one group after the other.
-  const StateOptions how{fine, coarse, nodes, light, hours, effort_of_year.sun_rays, solving.solve};
+  const StateOptions how{
+      fine, coarse, nodes, light, hours, prepared->scene.repairs.max_element, effort_of_year.sun_rays, solving.solve};
   std::vector<std::unique_ptr<WindowState>> states;
   states.push_back(std::make_unique<WindowState>(prepared->scene, std::move(kept), how, monitor));
   add_closed_states(shown, *prepared, how, monitor, states);
@@ -267,10 +270,10 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   out.of_sensors.resize(at_sensors.size());
   const auto [first_sensor, last_sensor] = range_of_part(at_sensors.size(), settings.part, settings.parts);
   const auto [first_point, last_point] = range_of_part(points.size(), settings.part, settings.parts);
-  PointYears(states, out.rules, out.error, "sensors", monitor)
+  PointYears(states, out.rules, out.error_of_sensors, "sensors", monitor)
       .run(at_sensors, first_sensor, last_sensor, of_sensors,
            rooms_of_points(at_sensors.size(), out.grids, set_of_sensors(scene.sensors)), true, take, out.of_sensors);
-  PointYears(states, out.rules, out.error, "points", monitor)
+  PointYears(states, out.rules, out.error_of_points, "points", monitor)
       .run(
           points, first_point, last_point, of_points,
           rooms_of_points(points.size(), out.rooms, room_of_points(out.solved.patches, out.solved.lightmap, out.rooms)),

@@ -55,7 +55,7 @@ struct YearSolved {
   std::size_t sky_parts = 0, sun_nodes = 0;
   std::vector<PointYear> of_points, of_sensors;  ///< those of the part that was asked for; others have no hours
   std::vector<YearArea> rooms, grids;
-  YearError error;                                          ///< that figures' low and high are of
+  YearError error_of_points, error_of_sensors;              ///< that figures' low and high are of
   std::optional<ErrorFigures> error_points, error_sensors;  ///< of illuminances in single hours
 };
 

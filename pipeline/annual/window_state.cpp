@@ -30,7 +30,7 @@ WindowState::WindowState(const Prepared& scene, KeptTransport kept, const StateO
   kept = {};
   light_ = std::make_unique<Illumination>(gather_illumination_by_slits(problem_, B_, {}, how.solve.seed, monitor));
   scene_ = std::make_unique<YearScene>(
-      year_scene(*light_, how.fine, reflected_, how.year, how.hours, how.sun_rays, how.solve.seed));
+      year_scene(*light_, how.fine, reflected_, how.year, how.hours, how.plan_reach, how.sun_rays, how.solve.seed));
 }
 
 WindowState::WindowState(std::unique_ptr<Prepared> scene, KeptTransport kept, const StateOptions& how,

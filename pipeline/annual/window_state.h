@@ -20,6 +20,7 @@ struct StateOptions {
   const SunNodes& nodes;
   const YearLight& year;
   std::span<const DaylightHour> hours;
+  double plan_reach;
   std::size_t sun_rays;
   const SolveOptions& solve;
 };

@@ -7,6 +7,7 @@
 
 #include "solver/illumination/find_images.h"
 #include "solver/illumination/place_lights.h"
+#include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
@@ -16,14 +17,17 @@ namespace clerestory {
 namespace {
 
 struct Counts {
-  std::size_t hours, points;
-  int paths, sun_rays;
+  std::size_t hours, points;  ///< points in each hour, other ones in every hour
+  int paths;                  ///< a point, before those that are noisy get more
+  int sun_rays;
 };
 Counts counts_of(Accuracy accuracy) {
-  if (accuracy == Accuracy::draft) return {8, 12, 256, 64};
-  if (accuracy == Accuracy::standard) return {16, 16, 512, 256};
-  return {32, 24, 1024, 1024};
+  if (accuracy == Accuracy::draft) return {8, 12, 128, 64};
+  if (accuracy == Accuracy::standard) return {16, 16, 256, 256};
+  return {32, 24, 512, 1024};
 }
+constexpr double kNoise = 0.05;  ///< of a reference, relative: below it a point gets no more paths
+constexpr int kMostRounds = 3;   ///< of twice as many paths each
 
 /// `count` of those that count, evenly by the light of open ground.
 std::vector<std::size_t> hours_to_look_at(std::span<const DaylightHour> hours, const YearRules& rules,
@@ -42,11 +46,24 @@ std::vector<std::size_t> hours_to_look_at(std::span<const DaylightHour> hours, c
   return chosen;
 }
 
-std::vector<PlacesOfPoint> even_choice(std::span<const PlacesOfPoint> points, std::size_t count) {
+/// `count` of the points, evenly.
+std::vector<PlacesOfPoint> even_choice(std::span<const PlacesOfPoint> points, std::span<const std::size_t> among,
+                                       std::size_t count) {
   std::vector<PlacesOfPoint> chosen;
-  const std::size_t n = std::min(count, points.size());
-  for (std::size_t k = 0; k < n; ++k) chosen.push_back(points[(2 * k + 1) * points.size() / (2 * n)]);
+  const std::size_t n = std::min(count, among.size());
+  for (std::size_t k = 0; k < n; ++k) chosen.push_back(points[among[(2 * k + 1) * among.size() / (2 * n)]]);
   return chosen;
+}
+
+/// Points that rooms are told by; all where there are none.
+std::vector<std::size_t> points_of(const std::vector<YearArea>& areas, std::size_t all) {
+  std::vector<std::size_t> points;
+  for (const YearArea& area : areas) points.insert(points.end(), area.points.begin(), area.points.end());
+  if (points.empty()) {
+    points.resize(all);
+    std::iota(points.begin(), points.end(), std::size_t{0});
+  }
+  return points;
 }
 
 LightSpec light_of(const DaylightHour& hour) {
@@ -56,32 +73,80 @@ LightSpec light_of(const DaylightHour& hour) {
   return light;
 }
 
-/// Upper end of the 95 % interval of the relative error of what is worth a threshold.
+/// Upper end of the 95 % interval of the relative error of what is at least `least`. What its reference leaves open
+/// weighs less.
 double relative_error(std::span<const Comparison> found, double least) {
-  double n = 0, sum = 0, squares = 0;
-  for (const Comparison& c : found) {
-    if (!(c.r >= least)) continue;
-    const double off = (c.x - c.r) / c.r, noise = c.std_error / c.r, square = off * off - noise * noise;
-    ++n, sum += square, squares += square * square;
-  }
-  if (n < 2) return 0;
-  const double mean = sum / n, variance = std::max(0.0, squares / n - mean * mean) / (n - 1);
-  return std::min(0.9, std::sqrt(std::max(0.0, mean) + 2 * std::sqrt(variance)));
+  double all = 0, sum = 0, weights = 0;
+  const auto weight_of = [](const Comparison& c) {
+    const double noise = c.std_error / (2 * kNoise * c.r);
+    return 1 / (1 + noise * noise);
+  };
+  const auto square_of = [](const Comparison& c) {
+    const double off = (c.x - c.r) / c.r, noise = c.std_error / c.r;
+    return off * off - noise * noise;
+  };
+  for (const Comparison& c : found)
+    if (c.r >= least) ++all, weights += weight_of(c), sum += weight_of(c) * square_of(c);
+  if (all < 2) return 0;
+  const double mean = sum / weights;
+  double spread = 0;
+  for (const Comparison& c : found)
+    if (c.r >= least) spread += std::pow(weight_of(c) * (square_of(c) - mean), 2);
+  return std::sqrt(std::max(0.0, mean) + 2 * std::sqrt(spread) / weights);
 }
 
 struct YearComparisons {
   std::vector<Comparison> total, direct;
 };
 
+/// Luminous mean at points by paths, noisy ones by more of them.
+struct Reference {
+  double r = 0, std_error = 0;
+};
+std::vector<Reference> references(const Illumination& light, std::span<const PlacesOfPoint* const> points, int paths,
+                                  std::uint64_t key) {
+  struct Sum {
+    double paths = 0, r = 0, variance = 0;  ///< weighted by paths; its square
+  };
+  std::vector<Sum> sum(points.size());
+  std::vector<std::size_t> open(points.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  for (int round = 0; round < kMostRounds && !open.empty(); ++round, paths *= 2) {
+    std::vector<ReceivingPoint> places;
+    for (const std::size_t p : open) places.insert(places.end(), points[p]->at.begin(), points[p]->at.end());
+    const PointIrradiance found =
+        trace_paths_at(light, places.size(), [&](std::size_t i) { return places[i]; }, paths,
+                       stream_key(key, kYearErrorPaths, static_cast<std::uint64_t>(round)), "error", {});
+    std::size_t place = 0;
+    for (const std::size_t p : open) {
+      double r = 0, variance = 0;
+      for (const double weight : points[p]->weight) {
+        r += weight * luminous_mean(found.E[place]);
+        variance += std::pow(weight * luminous_mean(found.std_error[place]), 2);
+        ++place;
+      }
+      sum[p].paths += paths, sum[p].r += paths * r, sum[p].variance += double{1} * paths * paths * variance;
+    }
+    std::erase_if(open, [&](std::size_t p) { return std::sqrt(sum[p].variance) <= kNoise * sum[p].r; });
+  }
+  std::vector<Reference> out;
+  for (const Sum& s : sum) out.push_back({s.r / s.paths, std::sqrt(s.variance) / s.paths});
+  return out;
+}
+
+/// Each hour at points of its own.
 YearComparisons compare(const WindowState& open, const Prepared& scene, std::span<const PlacesOfPoint> points,
                         const GatherPattern& pattern, std::span<const DaylightHour> hours,
                         std::span<const std::size_t> look_at, const Counts& counts, std::uint64_t seed,
                         const Monitor& monitor) {
   const std::size_t H = open.year().hours;
   std::vector<float> total(points.size() * H), direct(points.size() * H);
-  open.year_at(points, pattern, total, direct);
-  std::vector<ReceivingPoint> places;
-  for (const PlacesOfPoint& point : points) places.insert(places.end(), point.at.begin(), point.at.end());
+  constexpr std::size_t kBlock = 16;
+  parallel_for((points.size() + kBlock - 1) / kBlock, 1, [&](std::size_t from, std::size_t to) {
+    const std::size_t begin = from * kBlock, count = std::min(to * kBlock, points.size()) - begin;
+    open.year_at(points.subspan(begin, count), pattern, std::span(total).subspan(begin * H, count * H),
+                 std::span(direct).subspan(begin * H, count * H));
+  });
   YearComparisons found;
   for (std::size_t k = 0; k < look_at.size(); ++k) {
     const std::size_t h = look_at[k];
@@ -91,26 +156,28 @@ YearComparisons compare(const WindowState& open, const Prepared& scene, std::spa
     lights.openings = scene.lights.openings;
     const Problem problem{open.problem().patches, scene.rays, lights};
     const Illumination light(problem);
-    const PointIrradiance r = trace_paths_at(light, places.size(), [&](std::size_t i) { return places[i]; },
-                                             counts.paths, stream_key(seed, kYearErrorPaths, h), "error", {});
-    std::size_t place = 0;
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      Comparison of_total{.x = total[p * H + h] / kWhiteEfficacy}, of_direct{.x = direct[p * H + h] / kWhiteEfficacy};
-      double variance = 0;
-      for (std::size_t s = 0; s < points[p].at.size(); ++s, ++place) {
-        const double weight = points[p].weight[s], noise = weight * luminous_mean(r.std_error[place]);
-        of_total.r += weight * luminous_mean(r.E[place]);
-        variance += noise * noise;
-        of_direct.r += weight * luminous_mean(light.sampler.delta_light(places[place].p, places[place].n,
-                                                                        {.sun_rays = counts.sun_rays},
-                                                                        stream_key(seed, kYearErrorPoints, h)));
-      }
-      of_total.std_error = std::sqrt(variance);
-      found.total.push_back(of_total);
-      found.direct.push_back(of_direct);
+    std::vector<std::size_t> number;
+    std::vector<const PlacesOfPoint*> own;
+    for (std::size_t p = k; p < points.size(); p += look_at.size()) number.push_back(p), own.push_back(&points[p]);
+    const std::vector<Reference> reference = references(light, own, counts.paths, stream_key(seed, kYearErrorPaths, h));
+    for (std::size_t j = 0; j < own.size(); ++j) {
+      const std::size_t at = number[j] * H + h;
+      found.total.push_back(
+          {.x = total[at] / kWhiteEfficacy, .r = reference[j].r, .std_error = reference[j].std_error});
+      Comparison& of_direct = found.direct.emplace_back(Comparison{.x = direct[at] / kWhiteEfficacy});
+      for (std::size_t s = 0; s < own[j]->at.size(); ++s)
+        of_direct.r += own[j]->weight[s] * luminous_mean(light.sampler.delta_light(
+                                               own[j]->at[s].p, own[j]->at[s].n, {.sun_rays = counts.sun_rays},
+                                               stream_key(seed, kYearErrorPoints, h)));
     }
   }
   return found;
+}
+
+YearError error_of(const YearComparisons& found, double threshold) {
+  constexpr double kPart = 1.0 / 3;  // of a threshold, from which on an illuminance may be wrong about it
+  return {relative_error(found.total, kPart * threshold / kWhiteEfficacy),
+          relative_error(found.direct, kPart * kSunLux / kWhiteEfficacy)};
 }
 
 }  // namespace
@@ -119,16 +186,19 @@ void measure_year_error(const WindowState& open, const Prepared& scene, std::spa
                         const GatherPattern& of_points, std::span<const PlacesOfPoint> sensors,
                         const GatherPattern& of_sensors, std::span<const DaylightHour> hours, const SolveOptions& solve,
                         const Monitor& monitor, YearSolved& out) {
-  constexpr double kPart = 1.0 / 3;  // of a threshold, from which on an illuminance may be wrong about it
   const Counts counts = counts_of(solve.accuracy);
   const std::vector<std::size_t> look_at = hours_to_look_at(hours, out.rules, counts.hours);
-  const bool by_sensors = !sensors.empty();
-  const YearComparisons found =
-      compare(open, scene, even_choice(by_sensors ? sensors : points, counts.points),
-              by_sensors ? of_sensors : of_points, hours, look_at, counts, solve.seed, monitor);
-  (by_sensors ? out.error_sensors : out.error_points) = summarise(found.total);
-  out.error.total = relative_error(found.total, kPart * out.rules.threshold / kWhiteEfficacy);
-  out.error.direct = relative_error(found.direct, kPart * kSunLux / kWhiteEfficacy);
+  const auto measure = [&](std::span<const PlacesOfPoint> all, const std::vector<YearArea>& areas,
+                           const GatherPattern& pattern, std::optional<ErrorFigures>& figures, YearError& error) {
+    if (all.empty()) return;
+    const std::size_t count = look_at.size() * counts.points / (sensors.empty() ? 1 : 2);
+    const YearComparisons found = compare(open, scene, even_choice(all, points_of(areas, all.size()), count), pattern,
+                                          hours, look_at, counts, solve.seed, monitor);
+    figures = summarise(found.total);
+    error = error_of(found, out.rules.threshold);
+  };
+  measure(sensors, out.grids, of_sensors, out.error_sensors, out.error_of_sensors);
+  measure(points, out.rooms, of_points, out.error_points, out.error_of_points);
 }
 
 }  // namespace clerestory

@@ -46,7 +46,7 @@ AnnualReport annual_report(const Scene& scene, const DaylightYear& year, const s
   report.lit_hours = static_cast<int>(year.hours.size()), report.missing_hours = year.missing_hours;
   report.threshold = solved.rules.threshold;
   report.blinds_operated = solved.has_blinds;
-  report.error_total = solved.error.total, report.error_direct = solved.error.direct;
+  report.error_rooms = solved.error_of_points, report.error_grids = solved.error_of_sensors;
   report.rooms = told(solved.rooms), report.grids = told(solved.grids);
   return report;
 }

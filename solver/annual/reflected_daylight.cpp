@@ -8,6 +8,7 @@
 #include "solver/illumination/illumination.h"
 #include "solver/model/assert.h"
 #include "solver/model/parallel.h"
+#include "solver/model/units.h"
 #include "solver/sampling/packed_direction.h"
 
 namespace clerestory {
@@ -57,9 +58,23 @@ Field straight_from_suns(const KeptTransport& kept, const RayScene& rays, std::s
   for (std::size_t k = 0; k < node_of_sun.size(); ++k) layers[node_of_sun[k]].lights[k] = Spectrum(1.0);
   const Problem problem{kept.elements, rays, suns};
   DirectRows rows;
-  direct_light(Illumination(problem), {.shadow_rays = 16, .edge_rays = 64, .sky_rays = 0, .seed = seed}, monitor,
-               &rows);
+  direct_light(Illumination(problem), {.shadow_rays = 8, .edge_rays = 16, .sky_rays = 0, .seed = seed}, monitor, &rows);
   return direct_layers(kept.elements, rows, layers).delta_light;
+}
+
+/// Of nodes first, first + 1, ..., whose direct irradiance is E and radiosity B.
+void add_flux_of_suns(const PatchSet& elements, const Field& E, const Field& B, std::size_t first, std::size_t nodes,
+                      ReflectedDaylight& out) {
+  const std::size_t count = static_cast<std::size_t>(E.channels / elements.channels);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Field E_of_node = one_layer(E, k, elements.channels), B_of_node = one_layer(B, k, elements.channels);
+    for (std::size_t i = 0; i < elements.patch_count(); ++i) {
+      const std::size_t at = elements.room_of(i) * nodes + first + k;
+      out.first_flux[at] += elements.area[i] * luminous_mean(elements.scattered(E_of_node, i));
+      out.all_flux[at] += elements.area[i] * luminous_mean(B_of_node[i]);
+      if (!E_of_node[i].is_black()) out.sunlit[i] = true;
+    }
+  }
 }
 
 }  // namespace
@@ -70,8 +85,12 @@ ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& ra
   const PatchSet& elements = kept.elements;
   const auto channels = static_cast<std::size_t>(elements.channels);
   const std::size_t n = elements.patch_count(), sky = parts.count() + 1, at_once = kAtOnce / channels;
-  ReflectedDaylight out{sky + nodes.size(), elements.channels, {}, {}};
+  ReflectedDaylight out;
+  out.lanes = sky + nodes.size(), out.channels = elements.channels;
   out.B.resize(n * channels * out.lanes);
+  out.first_flux.resize(elements.room_count() * nodes.size());
+  out.all_flux.resize(out.first_flux.size());
+  out.sunlit.resize(n);
   for (std::size_t first = 0, count; first < out.lanes; first += count) {
     monitor.report("reflected", static_cast<double>(first) / static_cast<double>(out.lanes));
     if (monitor.should_stop()) {
@@ -83,6 +102,7 @@ ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& ra
         first < sky ? straight_from_sky(kept, parts, first, count)
                     : straight_from_suns(kept, rays, nodes.subspan(first - sky, count), seed, monitor, out.sun_ways);
     const Balanced s = balance(elements, kept.tree, kept.transport, Field(n, E.channels), E, {}, kResidual, monitor);
+    if (first >= sky) add_flux_of_suns(elements, E, s.B, first - sky, nodes.size(), out);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t k = 0; k < count; ++k)
         for (std::size_t c = 0; c < channels; ++c)

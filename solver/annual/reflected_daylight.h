@@ -18,7 +18,11 @@ namespace clerestory {
 struct ReflectedDaylight {
   std::size_t lanes = 0;  ///< parts + 1 + nodes
   int channels = 1;
-  std::vector<float> B;                          ///< N x channels x lanes
+  std::vector<float> B;  ///< N x channels x lanes
+  /// Of each room and node, room * nodes + node, luminous means: what surfaces send on of the sun that falls on them
+  /// straight, and of all light [W].
+  std::vector<double> first_flux, all_flux;
+  std::vector<bool> sunlit;                      ///< N, elements that the sun reaches at any node
   std::vector<std::vector<MirrorWay>> sun_ways;  ///< of each node, over which mirrors and panes its light comes, too
   bool complete = true;                          ///< false: stopped
 
@@ -32,7 +36,7 @@ struct ReflectedDaylight {
 ///
 /// kept   of a solve under a sky, complete.
 /// nodes  directions of the sun.
-/// Threads: same bits for any thread count. Cost: 16 to 64 rays an element and node; one balance for eight lanes.
+/// Threads: same bits for any thread count. Cost: 8 to 24 rays an element and node; one balance for eight lanes.
 ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& rays, const SkyParts& parts,
                                    std::span<const Vec3> nodes, std::uint64_t seed, const Monitor& monitor = {});
 

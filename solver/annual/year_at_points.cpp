@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "solver/annual/sun_in_rooms.h"
 #include "solver/gather/gather_point.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
@@ -32,12 +34,35 @@ std::vector<std::vector<std::uint32_t>> parts_around(const SkyParts& parts) {
   return around;
 }
 
+/// Plans of points that look alike.
+class SharedPlans {
+ public:
+  SharedPlans(const YearScene& scene, const GatherPattern& pattern)
+      : scene_(scene), pattern_(pattern), wants_(wants_plan(scene.light, pattern)) {}
+
+  const GatherPlan& at(const ReceivingPoint& point, unsigned long long& rays) {
+    constexpr double kAlike = 0.9999;
+    if (!wants_) return none_;
+    for (const auto& [made_at, plan] : plans_)
+      if (dot(made_at.n, point.n) > kAlike && length(made_at.p - point.p) <= scene_.plan_reach) return plan;
+    plans_.push_back({point, plan_gather(scene_.light, point.p, point.n, pattern_, rays)});
+    return plans_.back().second;
+  }
+
+ private:
+  const YearScene& scene_;
+  const GatherPattern& pattern_;
+  bool wants_;
+  GatherPlan none_;
+  std::vector<std::pair<ReceivingPoint, GatherPlan>> plans_;
+};
+
 }  // namespace
 
 YearScene year_scene(const Illumination& light, const SkyParts& fine, const ReflectedDaylight& reflected,
-                     const YearLight& year, std::span<const DaylightHour> hours, std::size_t sun_rays,
-                     std::uint64_t seed) {
-  YearScene scene{light, fine, reflected, year, {}, {}, {}, parts_around(fine)};
+                     const YearLight& year, std::span<const DaylightHour> hours, double plan_reach,
+                     std::size_t sun_rays, std::uint64_t seed) {
+  YearScene scene{light, fine, reflected, year, {}, {}, {}, {}, plan_reach, parts_around(fine)};
   for (std::size_t h = 0; h < hours.size(); ++h) {
     if (!(year.sun[h] > 0)) continue;
     std::span<const MirrorWay> ways;
@@ -49,6 +74,8 @@ YearScene year_scene(const Illumination& light, const SkyParts& fine, const Refl
     scene.hour_of_sun.push_back(h);
     scene.part_of_sun.push_back(static_cast<std::uint32_t>(fine.part_of(hours[h].sun)));
   }
+  scene.in_room = sun_in_rooms(light.problem.patches, light.problem.rays, reflected, scene.suns, scene.hour_of_sun,
+                               year.of_sun, seed);
   return scene;
 }
 
@@ -57,14 +84,16 @@ unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint
   unsigned long long rays = 0;
   LightRow row;
   std::vector<PointCoefficients> coefficients(
-      points.size(), {std::vector<float>(scene.fine.count() + 1), std::vector<float>(scene.reflected.lanes)});
+      points.size(), {std::vector<float>(scene.fine.count() + 1), std::vector<float>(scene.year.coarse.parts()), {}});
+  SharedPlans plans(scene, pattern);
   std::vector<ReceivingPoint> places;
   std::vector<bool> may_come;
   for (std::size_t p = 0; p < points.size(); ++p) {
     for (std::size_t k = 0; k < points[p].at.size(); ++k) {
       const ReceivingPoint& at = points[p].at[k];
-      gather_point(scene.light, at.p, at.n, pattern, rays, &row);
-      add_row(row, at.n, scene.fine, scene.reflected, points[p].weight[k], sums, coefficients[p]);
+      gather_point(scene.light, at.p, at.n, pattern, plans.at(at, rays), rays, &row);
+      add_row(row, at.n, scene.fine, scene.light.problem.patches, scene.reflected, points[p].weight[k], sums,
+              coefficients[p]);
     }
     const std::vector<bool> near = parts_near_seen(scene, coefficients[p]);
     for (const ReceivingPoint& at : points[p].at) {
@@ -82,7 +111,7 @@ unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint
     for (std::size_t k = 0; k < points[p].at.size(); ++k, ++place)
       for (std::size_t s = 0; s < suns; ++s)
         sun[p * H + scene.hour_of_sun[s]] += static_cast<float>(points[p].weight[k]) * at_places[place * suns + s];
-  series_of(scene.year, coefficients, sun, total, direct);
+  series_of(scene.year, coefficients, sun, scene.in_room, total, direct);
   return rays;
 }
 

@@ -24,9 +24,11 @@ struct YearScene {
   const SkyParts& fine;
   const ReflectedDaylight& reflected;
   const YearLight& year;
-  std::vector<SunOfHour> suns;                           ///< of the hours with sun, ascending
-  std::vector<std::size_t> hour_of_sun;                  ///< in `year`
-  std::vector<std::uint32_t> part_of_sun;                ///< fine, by sun
+  std::vector<SunOfHour> suns;             ///< of the hours with sun, ascending
+  std::vector<std::size_t> hour_of_sun;    ///< in `year`
+  std::vector<std::uint32_t> part_of_sun;  ///< fine, by sun
+  std::vector<float> in_room;              ///< by sun_in_rooms()
+  double plan_reach;  ///< how far from where it was made a gather's plan serves points that face alike [m]
   std::vector<std::vector<std::uint32_t>> parts_around;  ///< of each fine part: those within kAround of it, itself too
 };
 
@@ -34,14 +36,15 @@ struct YearScene {
 /// sun_rays  to the disc, where two of them disagree: the point lies in half-shadow.
 /// Everything outlives it.
 YearScene year_scene(const Illumination& light, const SkyParts& fine, const ReflectedDaylight& reflected,
-                     const YearLight& year, std::span<const DaylightHour> hours, std::size_t sun_rays,
-                     std::uint64_t seed);
+                     const YearLight& year, std::span<const DaylightHour> hours, double plan_reach,
+                     std::size_t sun_rays, std::uint64_t seed);
 
 /// Illuminance of points by the hour [lx]: total and direct sun, points x H by point, replaced.
 ///
 /// The sun is looked for where a point has seen sky within 15 degrees of it, by the rays of its gather: what they all
 /// miss is a hole of a few degrees.
-/// returns  rays sent. One thread; same bits for a point in any company.
+/// points   near each other, as far as that is possible: plans of gathers are shared among them.
+/// returns  rays sent. One thread.
 unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint> points, const GatherPattern& pattern,
                            RowSums& sums, std::span<float> total, std::span<float> direct);
 

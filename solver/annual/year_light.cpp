@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <numbers>
 
 #include "solver/model/parallel.h"
@@ -28,19 +29,20 @@ constexpr std::size_t kPoints = 4, kHours = RadianceByHour::kTogether;
 #else
 #define CLERESTORY_WIDE
 #endif
+using EightHours = float __attribute__((vector_size(32)));
+constexpr std::size_t kVectors = kHours / 8;
+
 /// sum[p][h] += coefficient[k][p] * light[lane[k]][h], for sixteen hours.
 CLERESTORY_WIDE void add_light(const float* light, const std::uint32_t* lane,
                                const std::array<float, kPoints>* coefficient, std::size_t count, float (*sum)[kHours]) {
-  float s[kPoints][kHours];
-  for (std::size_t p = 0; p < kPoints; ++p)
-    for (std::size_t h = 0; h < kHours; ++h) s[p][h] = sum[p][h];
+  EightHours s[kPoints][kVectors], L[kVectors];
+  std::memcpy(&s, sum, sizeof s);
   for (std::size_t k = 0; k < count; ++k) {
-    const float* const L = light + lane[k] * kHours;
+    std::memcpy(&L, light + lane[k] * kHours, sizeof L);
     for (std::size_t p = 0; p < kPoints; ++p)
-      for (std::size_t h = 0; h < kHours; ++h) s[p][h] += coefficient[k][p] * L[h];
+      for (std::size_t v = 0; v < kVectors; ++v) s[p][v] += coefficient[k][p] * L[v];
   }
-  for (std::size_t p = 0; p < kPoints; ++p)
-    for (std::size_t h = 0; h < kHours; ++h) sum[p][h] = s[p][h];
+  std::memcpy(sum, &s, sizeof s);
 }
 
 /// Lanes that any of four points has something of.
@@ -81,7 +83,7 @@ YearLight light_of_year(std::span<const DaylightHour> hours, const SkyParts& fin
 }
 
 void series_of(const YearLight& year, std::span<const PointCoefficients> points, std::span<const float> sun,
-               std::span<float> total, std::span<float> direct) {
+               std::span<const float> in_room, std::span<float> total, std::span<float> direct) {
   constexpr auto kLux = static_cast<float>(kWhiteEfficacy);
   const std::size_t H = year.hours, coarse = year.coarse.parts();
   Gathered straight, reflected;
@@ -95,18 +97,19 @@ void series_of(const YearLight& year, std::span<const PointCoefficients> points,
       add_light(year.fine.from(hour), straight.lane.data(), straight.coefficient.data(), straight.lane.size(), sum);
       add_light(year.coarse.from(hour), reflected.lane.data(), reflected.coefficient.data(), reflected.lane.size(),
                 sum);
-      for (std::size_t p = 0; p < count; ++p) {
-        const float* const of_node = points[first + p].reflected.data() + coarse;
+      for (std::size_t p = 0; p < count; ++p)
         for (std::size_t h = hour; h < std::min(hour + kHours, H); ++h) {
           const std::size_t at = (first + p) * H + h;
           const AmongNodes& among = year.of_sun[h];
           float by_sun = 0;
-          for (std::size_t k = 0; k < among.node.size(); ++k)
-            if (among.weight[k] > 0) by_sun += among.weight[k] * of_node[among.node[k]];
+          for (const auto& [room, of_node] : points[first + p].suns) {
+            float sent = 0;
+            for (std::size_t k = 0; k < among.node.size(); ++k) sent += among.weight[k] * of_node[among.node[k]];
+            by_sun += sent * in_room[room * H + h];
+          }
           direct[at] = kLux * year.sun[h] * sun[at];
           total[at] = kLux * (sum[p][h - hour] + year.sun[h] * by_sun) + direct[at];
         }
-      }
     }
   }
 }

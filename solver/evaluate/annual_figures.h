@@ -31,11 +31,6 @@ YearRules year_rules(std::span<const int> hours, std::span<const double> diffuse
                      std::span<const std::uint8_t> is_occupied, double threshold = 300,
                      std::vector<double> more_thresholds = {});
 
-/// Relative errors of illuminances, >= 0. From 1 on nothing is sure to be lit.
-struct YearError {
-  double total = 0, direct = 0;
-};
-
 /// One point in hours, of which each figure is a share. low and high: what it would be if all illuminances were wrong
 /// by their error, down or up.
 struct PointYear {

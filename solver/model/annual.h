@@ -51,6 +51,11 @@ struct BlindsYear {
   int hours_not_complying = 0;  ///< in which more than 2 % of the points have sun whatever is closed
 };
 
+/// Relative errors of illuminances, >= 0. From 1 on nothing is sure to be lit.
+struct YearError {
+  double total = 0, direct = 0;
+};
+
 /// What a report tells of a room or a grid.
 struct AreaOfYear {
   std::string name;
@@ -69,7 +74,7 @@ struct AnnualReport {
   int missing_hours = 0;                     ///< of the weather file, taken as dark
   double threshold = 300;                    ///< of DA, cDA and sDA [lx]
   bool blinds_operated = false;              ///< the model has blinds, and sDA and the others but ASE are with them
-  double error_total = 0, error_direct = 0;  ///< of illuminances, relative, that the intervals go by
+  YearError error_rooms, error_grids;        ///< that the intervals go by
   std::vector<AreaOfYear> rooms, grids;
 };
 

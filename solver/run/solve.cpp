@@ -114,7 +114,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
     return FieldOptions{.tolerance = of_level.vertex_tolerance,
                         .shortest_edge = shortest_edges(problem.patches, longest_edge, of_level, options),
                         .most_points = plan.most_points,
-                        .quality = of_level.vertices,
+                        .quality = around.vertices.value_or(of_level.vertices),
                         .coarser = coarser_than(level, &Effort::vertices),
                         .seed = options.seed};
   };

@@ -81,12 +81,12 @@ TEST(AnnualReport, TellsFiguresWithTheirIntervalsAndTheRulesInForce) {
   AnnualReport report;
   report.scene = "office.json", report.weather = "city.epw", report.city = "Golden";
   report.schedule = "8-18", report.occupied_hours = 3650, report.lit_hours = 4513;
-  report.error_total = 0.03;
+  report.error_grids.total = 0.03;
   report.rooms = {room()};
   const Json json = Json::parse(annual_json(report));
   EXPECT_EQ(json["schedule"]["occupied_hours"], 3650);
   EXPECT_EQ(json["weather"]["city"], "Golden");
-  EXPECT_EQ(json["illuminance_error"]["total"], 0.03);
+  EXPECT_EQ(json["illuminance_error"]["grids"]["total"], 0.03);
   EXPECT_NE(json["rules"]["ASE"].get<std::string>().find("more than 250 occupied hours"), std::string::npos);
   ASSERT_EQ(json["rooms"].size(), 1u);
   EXPECT_TRUE(json["grids"].is_array() && json["grids"].empty());

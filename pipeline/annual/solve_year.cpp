@@ -37,8 +37,8 @@ struct YearEffort {
 };
 YearEffort year_effort(Accuracy accuracy) {
   if (accuracy == Accuracy::draft) return {145, 12, 0};
-  if (accuracy == Accuracy::standard) return {577, 8, 14};
-  return {2305, 5, 30};
+  if (accuracy == Accuracy::standard) return {577, 8, 64};
+  return {2305, 5, 256};
 }
 
 Monitor monitor_of(Observer& observer) {

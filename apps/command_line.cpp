@@ -20,6 +20,7 @@ void add_commands(CLI::App& program, Task& task) {
   add_tradeoff_command(program, task);
   add_report_command(program, task);
   add_annual_command(program, task);
+  add_merge_command(program, task);
   add_render_command(program, task);
   add_mix_command(program, task);
 }

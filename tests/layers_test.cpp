@@ -64,7 +64,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"spaces", "gather", "paths"},
     {"hierarchy"},
     {"methods"},
-    {"evaluate"},
+    {"evaluate", "annual"},
     {"dimming"},
     {"run"},
 };

@@ -24,6 +24,7 @@ void add_tradeoff_command(CLI::App& program, Task& task);
 void add_report_command(CLI::App& program, Task& task);
 void add_mix_command(CLI::App& program, Task& task);
 void add_annual_command(CLI::App& program, Task& task);
+void add_merge_command(CLI::App& program, Task& task);
 void add_render_command(CLI::App& program, Task& task);
 
 }  // namespace clerestory

@@ -1,6 +1,8 @@
 #include "solver/annual/sun_on_points.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "solver/illumination/image_beams.h"
 #include "solver/lights/sun.h"
@@ -11,8 +13,6 @@
 
 namespace clerestory {
 namespace {
-
-constexpr std::size_t kPilots = 2;
 
 /// What of the sun's image comes to a point over mirrors and panes, by one ray.
 double over_mirrors(const RayScene& rays, const ReceivingPoint& at, const PlacedSun& image) {
@@ -26,9 +26,14 @@ double over_mirrors(const RayScene& rays, const ReceivingPoint& at, const Placed
 
 SunOfHour::SunOfHour(const Vec3& to_sun, std::span<const MirrorWay> over, std::size_t rays, std::uint64_t key)
     : direction(to_sun), ways(over) {
-  for (std::size_t k = 0; k < kPilots + rays; ++k) {
+  const Vec3 aside = normalized(std::abs(to_sun.z) < 0.9999 ? cross({0, 0, 1}, to_sun) : Vec3{1, 0, 0});
+  const Vec3 above = cross(to_sun, aside);
+  const double radius = std::tan(kSunDiameterDeg / 2 * std::numbers::pi / 180);
+  for (const Vec3& to_rim : {above, aside, above * -1.0, aside * -1.0})
+    pilots.push_back(normalized(to_sun + to_rim * radius));
+  for (std::size_t k = 0; k < rays; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), key);
-    (k < kPilots ? pilots : more).push_back(direction_to_sun({to_sun, Spectrum(1.0)}, u[0], u[1]));
+    more.push_back(direction_to_sun({to_sun, Spectrum(1.0)}, u[0], u[1]));
   }
 }
 

@@ -386,4 +386,5 @@ def main():
         SCENES[name](folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -15,7 +15,8 @@ namespace clerestory {
 namespace {
 
 constexpr std::size_t kAtOnce = 32;  ///< lanes, times channels: what is in double meanwhile
-constexpr double kResidual = 1e-4;   ///< of each lane; sums of lanes are no worse
+// Of all of a lane's flux, most of which may fall on ground and facades outside: what a room has is little of it.
+constexpr double kResidual = 1e-6;
 
 /// Straight from parts first, first + 1, ... of the sky, N x (count x channels).
 Field straight_from_sky(const KeptTransport& kept, const SkyParts& parts, std::size_t first, std::size_t count) {

@@ -70,14 +70,5 @@ TEST(SunNodes, ThePolarNightHasNone) {
   EXPECT_TRUE(nodes.of_sun.empty());
 }
 
-TEST(SunNodes, ASunOnANodeNeedsThatOneAlone) {
-  // Equator, equinox, noon: declination 0 and hour angle 0 are nodes of 12 degrees.
-  const std::vector<Vec3> suns{{0, 0, 1}};
-  const SunNodes nodes = place_sun_nodes(suns, 0, 0, 12);
-  double most = 0;
-  for (const float w : nodes.of_sun[0].weight) most = std::max(most, double{w});
-  EXPECT_NEAR(most, 1, 1e-6);
-}
-
 }  // namespace
 }  // namespace clerestory

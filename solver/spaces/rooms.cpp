@@ -223,17 +223,17 @@ bool contains(const NamedSpace& space, const Vec3& p) {
 
 /// Share of the rays from all over a patch that meet nothing.
 double share_that_escapes(const Problem& problem, std::size_t i) {
-  constexpr std::uint32_t kRays = 64;
+  constexpr std::uint32_t kRaysOfSide = 64;
   const Vec3 n = problem.patches.normal[i];
   const Frame frame(n);
   const auto corners = problem.patches.corner_positions(PatchId{i});
   int escaped = 0;
-  for (std::uint32_t k = 0; k < kRays; ++k) {
+  for (std::uint32_t k = 0; k < kRaysOfSide; ++k) {
     const auto u = sobol4(k, stream_key(kRoomSides, i));
     const Vec3 p = problem.rays.off_surface(point_on_triangle(corners, u[0], u[1]), n);
     escaped += problem.rays.first_hit(problem.patches, {p, cosine_direction(frame, u[2], u[3])}).escaped();
   }
-  return escaped / double{kRays};
+  return escaped / double{kRaysOfSide};
 }
 
 /// A wall of a single sheet that a room is named by has the room on one side only: the other, which looks more into the

@@ -232,6 +232,8 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
   RunReport report = new_report(arguments.input);
   check_writable(arguments.files.output);
   ReadOptions read = arguments.read;
+  if (read.sky)
+    throw InputError("--sky " + *read.sky + ": the skies of a year come from its weather file; leave --sky out.");
   read.for_a_year = true;
   Scene scene = read_scene(arguments.input, read);
   if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};

@@ -13,7 +13,9 @@
 #include "pipeline/collect_around.h"
 #include "pipeline/prepare.h"
 #include "pipeline/require_valid.h"
+#include "pipeline/result_checks.h"
 #include "pipeline/scene_checks.h"
+#include "pipeline/wording.h"
 #include "solver/annual/year_at_points.h"
 #include "solver/evaluate/sensor_planes.h"
 #include "solver/gather/gather.h"
@@ -167,6 +169,17 @@ class PointYears {
   const Monitor& monitor_;
 };
 
+/// What light of elements, hours and figures of points take, beside the solve [bytes].
+std::size_t memory_of_year(const PatchSet& elements, std::size_t states, const SunNodes& nodes, const YearLight& year,
+                           std::size_t points) {
+  const std::size_t lanes = year.coarse.parts() + nodes.direction.size();
+  const std::size_t of_state =
+      elements.patch_count() * static_cast<std::size_t>(elements.channels) * lanes * sizeof(float);
+  const std::size_t of_hours = (year.fine.parts() + year.coarse.parts()) * year.hours * sizeof(float);
+  constexpr std::size_t kPlace = 2 * sizeof(ReceivingPoint);
+  return states * of_state + of_hours + points * (sizeof(PointYear) + sizeof(PlacesOfPoint) + kPlace);
+}
+
 /// Which room decides on the blinds, by point.
 std::vector<const YearArea*> rooms_of_points(std::size_t points, const std::vector<YearArea>& areas,
                                              const std::vector<std::uint32_t>& area_of_point) {
@@ -227,6 +240,13 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   out.solved.lightmap = std::move(solved.lightmap);
   out.solved.solution = std::move(solved.solution);
 
+  const std::size_t shown_points = out.solved.lightmap.position.size() + sensors.sensor_count();
+  observer.step(
+      "a year at " + counted(shown_points, "point") + " from " + counted(kept.elements.patch_count(), "element") +
+      ": about " +
+      bytes(memory_of_year(kept.elements, blind_groups(shown.materials).size() + 1, nodes, light, shown_points)) +
+      " more memory");
+
   // Windows open, and closed one group after the other.
   const StateOptions how{
       fine, coarse, nodes, light, hours, prepared->scene.repairs.max_element, effort_of_year.sun_rays, solving.solve};
@@ -264,6 +284,7 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
           points, out.part_of_points.begin, out.part_of_points.end, of_points,
           rooms_of_points(points.size(), out.rooms, room_of_points(out.solved.patches, out.solved.lightmap, out.rooms)),
           false, take, out.of_points);
+  warn_about_result(out.solved, observer);
   show_mean(out.rules, out.of_points, out.solved);
   if (settings.parts == 1) add_up(out);
   return out;

@@ -28,7 +28,7 @@ namespace {
 //   classroom, ten layers, standard                      36,626  21,272 1,348,475       63.7 (56.4)    80 (62)
 //   the same, fine                                      111,228  60,820 2,252,804      109.9 (80.0)   151 (96)
 //   house, three layers, standard                        75,508  45,061   697,973       81.5 (74.2)    89 (70)
-constexpr double kProgram = 32 << 20;
+constexpr double kProgram = 34 << 20;
 constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 200, kPoint = 260, kLink = 10;  // [B]
 constexpr double kKeptElement = 150, kElementLane = 24, kPointLane = 24;  // with layers [B]
 

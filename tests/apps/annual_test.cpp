@@ -22,7 +22,8 @@ class Annual : public ::testing::Test {
  protected:
   void SetUp() override {
     folder.write("ground.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
-    folder.write("ground.json", R"({ "geometry": [{ "file": "ground.obj" }],
+    folder.write("ground.json",
+                 R"({ "geometry": [{ "file": "ground.obj" }], "materials": { "*": { "reflectance": 0.2, "sides": 1 } },
         "sensors": [{ "name": "up", "origin": [0, 0, 0.5], "u": [0.5, 0, 0], "v": [0, 0.5, 0], "spacing": 0.5,
                       "normal": [0, 0, 1] }] })");
     folder.write("year.epw", even_weather());
@@ -79,23 +80,24 @@ TEST_F(Annual, BlindsAreClosedInAsFewGroupsAsKeepTheSunOut) {
         "east": { "type": "glass", "transmittance": 0.7)" +
            (blinds.empty() ? "" : blinds + R"("east" } )") + R"( },
         "*": { "reflectance": 0.5 } },
-        "sensors": [{ "name": "desk", "origin": [0.25, 0.25, 0.8], "u": [2.5, 0, 0], "v": [0, 2.5, 0], "spacing": 0.25,
+        "sensors": [{ "name": "desk", "origin": [0.25, 0.25, 0.8], "u": [2.5, 0, 0], "v": [0, 2.5, 0], "spacing": 0.5,
                       "normal": [0, 0, 1] }] })";
   };
   folder.write("open.json", scene(""));
   folder.write("blinds.json", scene(R"(, "blinds": { "transmittance": 0.02, "group": )"));
-  ASSERT_EQ(annual("open.json").exit_code, 0);
+  const Words coarse{"--max-element", "1.5", "--detail", "0.1"};
+  ASSERT_EQ(annual("open.json", coarse).exit_code, 0);
   const nlohmann::json open = rooms_and_grids()["grids"][0];
-  ASSERT_EQ(annual("blinds.json").exit_code, 0);
+  ASSERT_EQ(annual("blinds.json", coarse).exit_code, 0);
   const nlohmann::json with_blinds = rooms_and_grids()["grids"][0];
   EXPECT_EQ(open["hours_blinds_closed"], 0);
   EXPECT_GT(with_blinds["hours_blinds_closed"], 1000);
   EXPECT_EQ(with_blinds["hours_not_complying"], 0) << "0.02 of 70,000 lx is no 1,000 lx";
   EXPECT_EQ(with_blinds["ASE"], open["ASE"]) << "with blinds open";
-  // The west pane stays open: less than half of the light is left, and more than closing both would leave.
+  // The west pane stays open: more is left than the 0.02 / 0.7 = 0.029 of closing both.
   const double left = with_blinds["mean_illuminance"].get<double>() / open["mean_illuminance"].get<double>();
   EXPECT_LT(left, 0.6);
-  EXPECT_GT(left, 0.06);
+  EXPECT_GT(left, 0.035);
 }
 
 TEST_F(Annual, RefusesWhatItCannotUse) {

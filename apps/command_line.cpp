@@ -20,7 +20,9 @@ void add_commands(CLI::App& program, Task& task) {
   add_tradeoff_command(program, task);
   add_report_command(program, task);
   add_annual_command(program, task);
+  add_merge_command(program, task);
   add_render_command(program, task);
+  add_mix_command(program, task);
 }
 
 std::string nearest(const std::string& mistyped, const std::vector<std::string>& known) {

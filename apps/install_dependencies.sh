@@ -12,6 +12,7 @@ packages=(
   libembree-dev libtbb-dev                # rays, threads
   libcgal-dev                             # meshing
   libopenmesh-dev                         # elements, lightmaps
+  coinor-libclp-dev                       # linear programmes: lamps dimmed to a target
   libstb-dev                              # places in a texture
   libassimp-dev nlohmann-json3-dev        # models and scene files in
   libvtk9-dev                             # results out

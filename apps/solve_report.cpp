@@ -1,10 +1,10 @@
 #include "apps/solve_report.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <tuple>
 
+#include "apps/table_lines.h"
 #include "io/text.h"
 #include "pipeline/collect_around.h"
 #include "pipeline/wording.h"
@@ -62,11 +62,6 @@ std::string in_words(Law law) {
       return "no light lost or made";
   }
   return {};
-}
-
-/// Characters of UTF-8.
-std::size_t width(const std::string& s) {
-  return static_cast<std::size_t>(std::ranges::count_if(s, [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 std::string remarks(const SensorSummary& s) {
@@ -130,25 +125,16 @@ std::vector<RunReport::Luminaires> luminaires_by_file(const LightSpec& lights) {
 }
 
 std::vector<std::string> sensor_table(const std::vector<SensorSummary>& sensors) {
-  using Row = std::array<std::string, 7>;
-  std::vector<Row> rows = {{"lux at sensors", "points", "mean", "min", "max", "median", "U0"}};
+  std::vector<std::vector<std::string>> rows = {{"lux at sensors", "points", "mean", "min", "max", "median", "U0"}};
   for (const SensorSummary& s : sensors) {
     const bool is_plain = s.kind == SensorKind::planar;
     const auto kind = std::string(kSensorKindNames[static_cast<std::size_t>(s.kind)]);
     rows.push_back({"  " + quotable(s.name, 40) + (is_plain ? "" : " (" + kind + ")"), grouped(s.points),
                     rounded(s.mean), rounded(s.min), rounded(s.max), rounded(s.median), rounded(s.uniformity, 2)});
   }
-  std::array<std::size_t, 7> widest{};
-  for (const Row& row : rows)
-    for (std::size_t k = 0; k < row.size(); ++k) widest[k] = std::max(widest[k], width(row[k]));
-  std::vector<std::string> lines;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    std::string line = rows[r][0] + std::string(widest[0] - width(rows[r][0]), ' ');
-    for (std::size_t k = 1; k < rows[r].size(); ++k)
-      line += std::string(2 + widest[k] - width(rows[r][k]), ' ') + rows[r][k];
-    const std::string note = r > 0 ? remarks(sensors[r - 1]) : "";
-    lines.push_back(note.empty() ? line : line + "  " + note);
-  }
+  std::vector<std::string> lines = table_lines(rows);
+  for (std::size_t k = 0; k < sensors.size(); ++k)
+    if (const std::string note = remarks(sensors[k]); !note.empty()) lines[k + 1] += "  " + note;
   return lines;
 }
 

@@ -30,10 +30,10 @@ install(FILES data/paraview/clerestory_view.py DESTINATION ${CMAKE_INSTALL_DATAD
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/clerestory)
 install(DIRECTORY solver DESTINATION ${include_dir} FILES_MATCHING PATTERN "*.h")
 install(FILES ${PROJECT_BINARY_DIR}/generated/solver/model/version.h DESTINATION ${include_dir}/solver/model)
-install(FILES pipeline/collect_around.h pipeline/observer.h pipeline/settings.h pipeline/solved.h pipeline/solve_scene.h
+install(FILES pipeline/at_time.h pipeline/collect_around.h pipeline/observer.h pipeline/settings.h pipeline/solved.h pipeline/solve_scene.h
   DESTINATION ${include_dir}/pipeline)
 install(FILES meshing/build_patches.h meshing/make_lightmap.h DESTINATION ${include_dir}/meshing)
-install(FILES io/atomic_file.h io/read_scene.h io/read_sensors.h io/write_result.h io/write_sensors.h io/run_report.h
+install(FILES io/atomic_file.h io/moment.h io/read_scene.h io/read_sensors.h io/write_result.h io/write_sensors.h io/run_report.h
   DESTINATION ${include_dir}/io)
 install(FILES io/formats/epw.h io/formats/weather_year.h DESTINATION ${include_dir}/io/formats)
 

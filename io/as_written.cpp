@@ -90,8 +90,8 @@ WrittenResult as_written(const PatchSet& patches, const VertexLightmap& lightmap
   if (!lightmap.std_error.value.empty()) add_field(r.of_points, "irradiance_std_error", lightmap.std_error);
   for (std::size_t s = 0; s < around.layers.size(); ++s) {
     const std::string& name = around.layers[s].name;
-    add_layer(r.of_points, name, s, patches.channels, layers.E, layers.B);
-    add_layer(r.of_cells, name, s, patches.channels, layers.E_elements, layers.B_elements);
+    add_layer(r.of_points, name, s, lightmap.E.channels, layers.E, layers.B);
+    add_layer(r.of_cells, name, s, solution.E.channels, layers.E_elements, layers.B_elements);
   }
   return r;
 }

@@ -72,6 +72,18 @@ class Tables {
     return all;
   }
 
+  /// Those whose names begin so, by what follows.
+  std::map<std::string, WrittenTable> named(const std::string& beginning) const {
+    std::map<std::string, WrittenTable> all;
+    for (int i = 0; i < data_->GetNumberOfArrays(); ++i) {
+      vtkDataArray* array = data_->GetArray(i);
+      if (!array || !array->GetName() || !std::string_view(array->GetName()).starts_with(beginning)) continue;
+      const int n = array->GetNumberOfComponents();
+      all[array->GetName() + beginning.size()] = {n, numbers(array->GetName(), n)};
+    }
+    return all;
+  }
+
   bool has(const char* name) const { return data_->GetAbstractArray(name) != nullptr; }
   /// n rows (any number when it is not given) of so many numbers; none where there is no such array.
   std::vector<double> numbers(const char* name, int components, std::optional<std::size_t> n = {}) const {
@@ -164,7 +176,7 @@ std::vector<MeasuredSensors> sensors_of(const Tables& tables, const WrittenResul
   const auto position = tables.positions(arrays::kSensorPositions, set.size()),
              normal = tables.positions(arrays::kSensorNormals, set.size());
   const auto lux = tables.numbers(arrays::kSensorIlluminance, 1, set.size());
-  const int lanes = tables.has(arrays::kSensorLayers) ? static_cast<int>(layers) * result.channels() : 0;
+  const int lanes = static_cast<int>(layers) * result.channels();
   const auto of_layers = lanes > 0 ? tables.numbers(arrays::kSensorLayers, lanes, set.size()) : std::vector<double>();
   for (std::size_t i = 0; i < set.size(); ++i) {
     MeasuredSensors& to = sensors[set[i]];
@@ -350,6 +362,8 @@ WrittenResult read_result(const std::filesystem::path& file) {
   if (result.of_cells.contains("room")) result.room = of_cells("room", result.rooms.size());
   result.around = around_of(tables, result, take(result.texts, arrays::kLayerNames), file);
   for (const std::string& report : take(result.texts, arrays::kReport)) result.report = report;
+  for (const std::string& part : take(result.texts, arrays::kYearPart)) result.year_part = part;
+  if (!result.year_part.empty()) result.year_tables = tables.named(arrays::kYearTables);
   return result;
 }
 

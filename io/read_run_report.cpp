@@ -117,6 +117,7 @@ RunReport report_of(const Json& json) {
   r.version = get<std::string>(json, "version");
   r.input = get<std::string>(json, "input");
   r.method = get<std::string>(json, "method");
+  r.time = get<std::string>(json, "time");
   for (const auto& [name, value] : member(json, "settings").items()) r.settings.push_back(figure_of(name, value));
   const Json& counts = member(json, "counts");
   r.counts.triangles = get<std::size_t>(counts, "triangles");

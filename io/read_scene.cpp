@@ -41,7 +41,12 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
-  if (to_lower(file.extension().string()) != ".json") return read_lone_model(file, options);
+  const bool is_scene_file = to_lower(file.extension().string()) == ".json";
+  if (!is_scene_file && !options.times.empty())
+    throw InputError(text(short_name(file),
+                          ": --times is for a scene file, which says where on earth the model stands; ",
+                          "write one with \"location\" and \"sky\" or \"sun\""));
+  if (!is_scene_file) return read_lone_model(file, options);
   if (options.unit || options.up || options.sky) {
     throw InputError(text(short_name(file), ": --",
                           options.unit ? "unit"

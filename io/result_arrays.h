@@ -36,5 +36,7 @@ inline constexpr const char* kLuminairePositions = "luminaire_positions";
 inline constexpr const char* kLuminaireFlux = "luminaire_flux";
 inline constexpr const char* kLuminaireNames = "luminaire_names";
 inline constexpr const char* kLuminaireGroups = "luminaire_groups";
+inline constexpr const char* kYearPart = "year_part";
+inline constexpr const char* kYearTables = "year_part_";  ///< what their names begin with
 
 }  // namespace clerestory::arrays

@@ -52,6 +52,13 @@ void add_error_figures(std::vector<Figure>& out, const std::string& group,
   out.push_back({group + ".bound", error->bound});
 }
 
+void add_energy_figures(std::vector<Figure>& out, const EnergyBalance& energy) {
+  out.insert(out.end(), {{"energy.emitted", energy.emitted},
+                         {"energy.absorbed", energy.absorbed},
+                         {"energy.escaped", energy.escaped},
+                         {"energy.imbalance", energy.imbalance()}});
+}
+
 std::string two_digits(int n) { return (n < 10 ? "0" : "") + std::to_string(n); }
 
 void add_daylight_figures(std::vector<Figure>& out, const Daylight& d) {
@@ -144,6 +151,8 @@ Json json_of(const LawCheck& check);
 
 Json json_of(const NotRead& n) { return {{"what", n.what}, {"count", n.count}, {"first", n.first}}; }
 
+Json json_of(const RunReport::AtTime& t);
+
 template <class Row>
 Json array_of(const std::vector<Row>& rows) {
   Json json = Json::array();
@@ -188,6 +197,20 @@ void set(Json& json, const Figure& figure) {
   std::visit([&](const auto& value) { (*place)[figure.name.substr(begin)] = value; }, figure.value);
 }
 
+Json json_of(const RunReport::AtTime& t) {
+  Json json = {{"time", t.time}, {"file", t.file}, {"mean_illuminance", t.mean_illuminance}};
+  std::vector<Figure> figures;
+  add_daylight_figures(figures, t.daylight);
+  add_energy_figures(figures, t.energy);
+  add_error_figures(figures, "error", t.error);
+  add_error_figures(figures, "error_sensors", t.error_sensors);
+  for (const Figure& figure : figures) set(json, figure);
+  if (!t.error) json["error"] = nullptr;
+  if (t.worst) json["error"]["worst"] = json_of(*t.worst);
+  if (!t.sensors.empty()) json["sensors"] = array_of(t.sensors);
+  return json;
+}
+
 }  // namespace
 
 RunReport new_report(const std::string& input) {
@@ -219,6 +242,7 @@ std::string stop_name(StopReason stop) {
 
 std::vector<Figure> repeatable_figures(const RunReport& r) {
   std::vector<Figure> out = {{"version", r.version}, {"input", r.input}, {"method", r.method}};
+  if (!r.time.empty()) out.push_back({"time", r.time});
   for (const Figure& setting : r.settings) out.push_back({"settings." + setting.name, setting.value});
   const auto is_max_element = [](const Figure& setting) { return setting.name == "max_element"; };
   if (r.repairs.max_element > 0 && std::ranges::none_of(r.settings, is_max_element))
@@ -236,11 +260,8 @@ std::vector<Figure> repeatable_figures(const RunReport& r) {
                          {"predicted_memory_bytes", count(r.predicted_memory_bytes)},
                          {"iterations", static_cast<long long>(r.iterations)},
                          {"residual", r.residual},
-                         {"stop", stop_name(r.stop)},
-                         {"energy.emitted", r.energy.emitted},
-                         {"energy.absorbed", r.energy.absorbed},
-                         {"energy.escaped", r.energy.escaped},
-                         {"energy.imbalance", r.energy.imbalance()}});
+                         {"stop", stop_name(r.stop)}});
+  add_energy_figures(out, r.energy);
   add_error_figures(out, "error", r.error);
   add_error_figures(out, "error_sensors", r.error_sensors);
   if (r.daylight) add_daylight_figures(out, *r.daylight);
@@ -263,6 +284,7 @@ Json repeatable_json(const RunReport& report) {
   if (!report.sensors.empty()) json["sensors"] = array_of(report.sensors);
   if (!report.spaces.empty()) json["spaces"] = array_of(report.spaces);
   if (!report.not_read.empty()) json["not_read"] = array_of(report.not_read);
+  if (!report.times.empty()) json["times"] = array_of(report.times);
   json["warnings"] = report.warnings;
   json["left_out"] = report.left_out;
   return json;

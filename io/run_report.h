@@ -25,6 +25,7 @@ struct Figure {
 
 struct RunReport {
   std::string version, input, method;
+  std::string time;              ///< that this result of several is of, "2026-03-21T12:00"; else empty
   std::vector<Figure> settings;  ///< every setting in force that the result depends on
   int threads = 0;               ///< no result depends on it
   struct Counts {
@@ -78,6 +79,17 @@ struct RunReport {
   std::vector<Space> spaces;           ///< rooms that the models name
   std::vector<NotRead> not_read;       ///< what the models hold and their readers did not use
   std::vector<SensorSummary> sensors;  ///< one a set
+  /// One of several times that were solved together, see Scene::times.
+  struct AtTime {
+    std::string time, file;  ///< of its result
+    Daylight daylight;
+    double mean_illuminance = 0;  ///< over all surfaces [lx]
+    EnergyBalance energy;
+    std::optional<Error> error, error_sensors;
+    std::optional<PartError> worst;  ///< of the rooms, where their errors are known
+    std::vector<SensorSummary> sensors;
+  };
+  std::vector<AtTime> times;  ///< empty: it was one
   StopReason stop = StopReason::converged;
   MeshReport repairs;
   std::vector<std::string> log;  ///< a line for each round of the solver; the last ones tell what a stopped run shows

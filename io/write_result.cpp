@@ -197,6 +197,16 @@ void add_around(vtkFieldData* to, const std::vector<Material>& materials, const 
   add_luminaires(to, around.luminaires);
 }
 
+void add_year_part(vtkFieldData* to, const WrittenResult& result) {
+  if (result.year_part.empty()) return;
+  add_names(to, arrays::kYearPart, 1, [&](std::size_t) { return result.year_part; });
+  for (const auto& [name, table] : result.year_tables) {
+    const auto n = static_cast<std::size_t>(table.components);
+    add_numbers(to, (arrays::kYearTables + name).c_str(), table.value.size() / n, table.components,
+                [&](std::size_t i, int c) { return table.value[i * n + static_cast<std::size_t>(c)]; });
+  }
+}
+
 void add_indices_of_patches(vtkFieldData* to, const PatchSet& patches) {
   const std::size_t n = patches.patch_count();
   add_indices(to, "material", n, [&](std::size_t i) { return patches.material(PatchId{i}).value; });
@@ -243,6 +253,7 @@ void write_result(AtomicFile& file, const WrittenResult& result, const RunReport
   add_rest(data->GetPointData(), result.of_points);
   add_field_data(data, result.materials, result.rooms, result.surfaces, report);
   add_around(data->GetFieldData(), result.materials, result.around, report);
+  add_year_part(data->GetFieldData(), result);
   data->GetCellData()->SetActiveScalars("illuminance");
   data->GetPointData()->SetActiveScalars("illuminance");
   write_vtp(file, data, result.around.layers.empty() ? Packing::zlib : Packing::plain);

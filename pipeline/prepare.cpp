@@ -8,10 +8,10 @@
 #include "meshing/make_lightmap.h"
 #include "pipeline/lap.h"
 #include "pipeline/panel_hints.h"
+#include "pipeline/parts_of_light.h"
 #include "pipeline/scene_checks.h"
 #include "pipeline/wording.h"
 #include "solver/illumination/place_lights.h"
-#include "solver/lights/layers.h"
 #include "solver/model/error.h"
 #include "solver/run/accuracy.h"
 #include "solver/run/memory_estimate.h"
@@ -105,7 +105,7 @@ std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& se
     if (!p) return {};
     const auto& [patches, repairs, rays, lights, lit_sides] = p->scene;
     settings.solve.memory_limit = memory_after_reading(limit, repairs);
-    const std::size_t layers = settings.layers ? layers_by_group(lights, patches).size() : 0;
+    const std::size_t layers = parts_of_light(scene, settings, lights, patches).size();
     const std::size_t lanes = layers * static_cast<std::size_t>(patches.channels);
     if (has_memory_for(patches, p->lightmap, lanes, settings.solve)) {
       const bool coarser = asked > 0 ? repairs.max_element > 1.01 * asked : static_cast<double>(fit) < wanted;

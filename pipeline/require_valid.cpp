@@ -1,5 +1,6 @@
 #include "pipeline/require_valid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -98,6 +99,21 @@ void check_groups(const Scene& scene) {
     check("material '" + quotable(material.name, 40) + "'", material.group);
 }
 
+/// Light that is a mean says so everywhere.
+void check_times(const Scene& scene) {
+  const LightSpec& lights = scene.lights;
+  if (lights.times != std::max<std::size_t>(scene.times.size(), 1))
+    refuse(scene, "its light is the mean of " + counted(lights.times, "time") + ", and it names " +
+                      std::to_string(scene.times.size()) + "; make it by mean_over_times().");
+  if (lights.sky && lights.sky->model == SkyModel::mean && lights.sky->parts.size() != lights.times)
+    refuse(scene, "its sky is the mean of " + std::to_string(lights.sky->parts.size()) + " skies, of " +
+                      counted(lights.times, "time") + "; make it by mean_over_times().");
+  for (const Sun& sun : lights.suns)
+    if (sun.time && *sun.time >= scene.times.size())
+      refuse(scene, "a sun shines at time " + std::to_string(*sun.time) + " of " + std::to_string(scene.times.size()) +
+                        "; they count from 0.");
+}
+
 void check_settings(const Scene& scene, const Settings& s) {
   const auto positive = [&](const std::optional<double>& x, const char* name) {
     if (x && !(std::isfinite(*x) && *x > 0))
@@ -115,6 +131,9 @@ void check_settings(const Scene& scene, const Settings& s) {
   positive(s.time_limit, "time_limit");
   if (s.channels && *s.channels != 1 && *s.channels != 3)
     refuse(scene, "channels = " + std::to_string(*s.channels) + "; 1 or 3 are possible.");
+  if (!scene.times.empty() && s.solve.method != Method::hierarchical)
+    refuse(scene, "several times are solved by the hierarchical method only, and the method is " +
+                      std::string(kMethodNames[static_cast<std::size_t>(s.solve.method)]) + ".");
   if (s.layers && s.solve.method != Method::hierarchical)
     refuse(scene, "layers are of the hierarchical method only, and the method is " +
                       std::string(kMethodNames[static_cast<std::size_t>(s.solve.method)]) + ".");
@@ -128,6 +147,7 @@ void require_valid(const Scene& scene, const Settings& settings) {
   for (const Material& material : scene.materials) check_material(scene, material);
   check_faces(scene);
   check_lights(scene);
+  check_times(scene);
   check_settings(scene, settings);
   if (settings.layers) check_groups(scene);
 }

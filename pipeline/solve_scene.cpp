@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "pipeline/collect_around.h"
+#include "pipeline/error_at_times.h"
 #include "pipeline/lap.h"
 #include "pipeline/panel_hints.h"
+#include "pipeline/parts_of_light.h"
 #include "pipeline/prepare.h"
 #include "pipeline/repeat_to_target.h"
 #include "pipeline/require_valid.h"
@@ -68,7 +70,7 @@ PlanesAndE without(const std::vector<std::size_t>& numbers, const SensorPlanes& 
         ++next;
         continue;
       }
-      rest.E.set(rest.planes.size(), E[plane]);
+      std::ranges::copy(lanes_of(E, plane), lanes_of(rest.E, rest.planes.size()).begin());
       rest.planes.push_back(sensors.planes[plane]);
     }
     rest.sets.push_back({set.name, rest.planes.size()});
@@ -76,12 +78,13 @@ PlanesAndE without(const std::vector<std::size_t>& numbers, const SensorPlanes& 
   return rest;
 }
 
-/// Radiosity is shown where it tells more than irradiance.
-void show_layers(LayeredField field, Solved& out) {
+/// Radiosity is shown where it tells more than irradiance; that of times is found when they are shown.
+void show_layers(LayeredField field, bool are_times, Solved& out) {
   const PatchSet& patches = out.patches;
   SolvedLayers& to = out.layers;
   to.energy = std::move(field.energy);
-  if (!patches.tau.value.empty() || !std::ranges::all_of(patches.M.value, [](double M) { return M == 0; })) {
+  const bool glows = !std::ranges::all_of(patches.M.value, [](double M) { return M == 0; });
+  if (!are_times && (glows || !patches.tau.value.empty())) {
     to.light.B = Field(field.E.size(), field.E.channels);
     for (std::size_t s = 0; s < to.layers.size(); ++s) {
       const Field B = radiosity_at_points(patches, out.lightmap, one_layer(field.E, s, patches.channels),
@@ -127,7 +130,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         Lap lap;
         const SolveOptions& options = settings.solve;
         const AroundSolve around{sensors.planes, seconds.mesh + seconds.build};
-        if (settings.layers) out.layers.layers = layers_by_group(lights, patches);
+        out.layers.layers = parts_of_light(scene, settings, lights, patches);
         SolvedPatches solved = solve(problem, std::move(prepared->lightmap), repairs.max_element, options, solving,
                                      settings.debug ? &out.debug : nullptr, around, out.layers.layers);
         if (solved.rather) {
@@ -175,6 +178,14 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
             return measure_sensor_error(problem, planes, sets, E, solution, e, options.seed, measuring);
           });
         }
+        if (!scene.times.empty()) out.error_at.resize(scene.times.size());
+        if (measures && light_of_layers && !scene.times.empty()) {
+          ErrorEffort of_time = effort(Accuracy::draft, options.tighten).error;
+          of_time.asked_points = settings.error_samples;
+          const auto [planes, sets, E] = without(*buried, sensors, scene.sensors, at_planes.layers);
+          out.error_at = errors_at_times({problem, solved.lightmap, solution, solved.layers}, {planes, sets, E},
+                                         of_time, options.seed, measuring);
+        }
         out.buried_sensors = sensors_of(sensors, *buried).size();
         if (monitor.is_interrupted()) solution.stop = StopReason::interrupted;
         lap.add_to(seconds.measure);
@@ -183,7 +194,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         out.patches = std::move(patches);
         out.laws = std::move(solved.laws);
         out.lightmap = std::move(solved.lightmap);
-        if (light_of_layers) show_layers(std::move(solved.layers), out);
+        if (light_of_layers) show_layers(std::move(solved.layers), !scene.times.empty(), out);
         out.solution = std::move(solution);
         out.repairs = repairs;
         out.lit_sides = std::move(lit_sides);

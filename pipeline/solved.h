@@ -29,6 +29,11 @@ struct SolvedLayers {
   std::vector<EnergyBalance> energy;  ///< of each layer
 };
 
+/// Of one time of Scene::times; empty where it is dark, or was not measured.
+struct ErrorAtTime {
+  std::optional<MeasuredError> surfaces, sensors;
+};
+
 struct Solved {
   PatchSet patches;         ///< the elements
   VertexLightmap lightmap;  ///< of the elements, E filled
@@ -41,12 +46,13 @@ struct Solved {
   std::size_t buried_sensors = 0;                     ///< inside solids: their error is not part of error_sensors
   MeshReport repairs;
   LitSides lit_sides;
-  std::size_t openings = 0;          ///< through which the sky looks in
-  HierarchyDebug debug;              ///< empty unless asked for
-  SolvedLayers layers;               ///< empty unless asked for
-  Settings settings;                 ///< as they were in force for this result
-  StageSeconds seconds;              ///< of all rounds
-  std::optional<Accuracy> rather{};  ///< there is time for this level instead: nothing else is filled
+  std::size_t openings = 0;           ///< through which the sky looks in
+  HierarchyDebug debug;               ///< empty unless asked for
+  SolvedLayers layers;                ///< empty unless asked for; of Scene::times one a time, its share of the mean
+  std::vector<ErrorAtTime> error_at;  ///< by time; empty unless there are several
+  Settings settings;                  ///< as they were in force for this result
+  StageSeconds seconds;               ///< of all rounds
+  std::optional<Accuracy> rather{};   ///< there is time for this level instead: nothing else is filled
 
   /// Stopped before there were patches to solve.
   bool empty() const { return patches.patch_count() == 0; }

@@ -64,7 +64,8 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"spaces", "gather", "paths"},
     {"hierarchy"},
     {"methods"},
-    {"evaluate"},
+    {"evaluate", "annual"},
+    {"dimming"},
     {"run"},
 };
 
@@ -104,6 +105,7 @@ const std::vector<Library>& libraries() {
       {"VTK", std::regex("vtk.*"), {"io/"}, true},  // what our .vtp files share, inside io/ only
       {"Assimp", std::regex("assimp/.*"), {"io/"}},
       {"OpenImageIO", std::regex("OpenImageIO/.*"), {"io/"}},
+      {"Clp", std::regex("coin/.*"), {"solver/dimming/linear_programme.cpp"}},
       {"HDF5", std::regex("hdf5\\.h"), {"io/annual/hdf5_module.cpp"}},
       {"JSON", std::regex("nlohmann/.*"), {"io/", "apps/"}, true},
       {"TBB", std::regex("(tbb|oneapi)/.*"), {"solver/model/parallel.cpp"}},

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <tuple>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -11,16 +13,20 @@
 #include "apps/finish_report.h"
 #include "apps/run.h"
 #include "apps/solve_report.h"
-#include "io/annual/annual_report.h"
+#include "apps/year_outputs.h"
+#include "io/annual/file_digest.h"
 #include "io/annual/honeybee_folder.h"
 #include "io/annual/hour_series.h"
+#include "io/annual/year_part_tables.h"
 #include "io/as_written.h"
 #include "io/formats/weather_year.h"
+#include "io/input_file.h"
 #include "io/read_schedule.h"
 #include "io/read_sensors.h"
+#include "io/text.h"
 #include "io/write_result.h"
-#include "io/write_sensors.h"
 #include "pipeline/annual/solve_year.h"
+#include "pipeline/annual/year_parts.h"
 #include "pipeline/annual/year_report.h"
 #include "pipeline/collect_around.h"
 #include "pipeline/lap.h"
@@ -36,17 +42,29 @@ struct Arguments {
   CommonArguments common;
   SolveArguments solve;
   ReadOptions read;
-  std::string input, output, weather, sensors, sensors_output, schedule = "8-18", hours, honeybee;
+  std::string input, weather, sensors, schedule = "8-18", hours, honeybee;
+  YearFiles files;
   std::vector<double> thresholds;
-  std::optional<std::string> sky_parts;
+  std::optional<std::string> sky_parts, part;
 };
 
-fs::path beside(const std::string& output, const char* extension) {
-  return fs::path(output).replace_extension(extension);
+/// "2/4" as its two numbers; nothing where it is no part.
+std::optional<std::pair<std::size_t, std::size_t>> part_of(const std::string& words) {
+  constexpr double kMost = 1e6;
+  const std::size_t slash = words.find('/');
+  if (slash == words.npos) return {};
+  const auto number = [](const std::string& s) {
+    const bool digits = !s.empty() && std::ranges::all_of(s, [](char c) { return c >= '0' && c <= '9'; });
+    return digits ? to_number(s).value_or(0) : 0;
+  };
+  const double part = number(words.substr(0, slash)), parts = number(words.substr(slash + 1));
+  if (part < 1 || part > parts || parts > kMost) return {};
+  return std::pair(static_cast<std::size_t>(part), static_cast<std::size_t>(parts));
 }
-fs::path sensors_output(const Arguments& arguments) {
-  return arguments.sensors_output.empty() ? beside(arguments.output, ".sensors.csv")
-                                          : fs::path(arguments.sensors_output);
+
+std::string problem_with_part(const std::string& words) {
+  if (part_of(words)) return {};
+  return "'" + quotable(words) + "' is no part; give i/n, part i of n, with 1 <= i <= n: 2/4";
 }
 
 /// Series of the hours as they come, into the places that were asked for.
@@ -117,6 +135,7 @@ YearSettings year_settings(const Arguments& arguments, const Scene& scene, const
     settings.more_thresholds.assign(arguments.thresholds.begin() + 1, arguments.thresholds.end());
   }
   if (arguments.sky_parts) settings.sky_parts = std::stoul(*arguments.sky_parts);
+  if (arguments.part) std::tie(settings.part, settings.parts) = *part_of(*arguments.part);
   return settings;
 }
 
@@ -134,21 +153,31 @@ RunReport::Error figures_of(const ErrorFigures& e) {
   return {e.rms_relative, e.median_relative, e.p95_relative, e.samples, e.confidence, e.bound};
 }
 
-void write_outputs(const Arguments& arguments, const Scene& scene, const YearSolved& solved, const AnnualReport& annual,
-                   const RunReport& report, Outputs& outputs) {
+WrittenResult written(const Scene& scene, const YearSolved& solved) {
   WrittenResult result = as_written(solved.solved.patches, solved.solved.lightmap, solved.solved.solution,
                                     collect_around(scene, solved.solved), {});
   add_figures(solved, result);
-  write_result(outputs.open(arguments.output), result, report);
-  outputs.open(beside(arguments.output, ".json")).write(annual_json(annual));
-  if (solved.of_sensors.empty()) return;
-  std::vector<std::string> names;
-  std::vector<double> values;
-  const std::vector<YearFigure> figures = year_figures(solved.rules);
-  for (const YearFigure& figure : figures) names.push_back(figure.name);
-  for (const PointYear& point : solved.of_sensors)
-    for (const YearFigure& figure : figures) values.push_back(figure(point, solved.rules));
-  write_sensor_figures(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), names, values);
+  return result;
+}
+
+std::vector<FileOfRun> files_of_run(const Arguments& arguments, const Scene& scene) {
+  std::vector<fs::path> files = scene.files;
+  files.emplace_back(arguments.weather);
+  if (!arguments.sensors.empty()) files.emplace_back(arguments.sensors);
+  if (fs::is_regular_file(arguments.schedule)) files.emplace_back(arguments.schedule);
+  std::vector<FileOfRun> all;
+  for (const fs::path& file : files) all.push_back({short_name(file), file_digest(file)});
+  return all;
+}
+
+void write_part(const Arguments& arguments, const Scene& scene, const YearSettings& settings, const YearSolved& solved,
+                const AnnualReport& annual, const RunReport& report, Outputs& outputs) {
+  WrittenResult result = written(scene, solved);
+  const YearPart part =
+      part_of_year(solved, settings, annual, all_sensor_points(scene.sensors), files_of_run(arguments, scene));
+  mark_other_parts(part, result);
+  add_year_part(part, result);
+  write_result(outputs.open(arguments.files.output), result, report);
 }
 
 void warn_of_lamps(const Scene& scene, Console& console) {
@@ -157,12 +186,32 @@ void warn_of_lamps(const Scene& scene, Console& console) {
     console.note("the figures are of daylight alone: lamps and glowing surfaces of the scene are off");
 }
 
-void say_year(const YearSolved& solved, const AnnualReport& annual, const RunReport& report, Console& console) {
+/// What a part has no use for; nothing where that is well.
+std::string not_of_a_part(const Arguments& arguments) {
+  if (!arguments.part) return {};
+  if (!arguments.files.sensors_out.empty()) return "--sensors-out is for merge: a part writes its sensors into its -o";
+  if (!arguments.hours.empty()) return "--hours is of all sensors: run it without --part";
+  if (!arguments.honeybee.empty()) return "--honeybee is of all sensors: run it without --part";
+  return {};
+}
+
+std::string results_of(const Arguments& arguments, const YearSolved& solved) {
+  if (!arguments.part) return arguments.files.told(solved);
+  return arguments.files.output + ": part " + *arguments.part + ", " +
+         counted(solved.part_of_points.end - solved.part_of_points.begin, "point") + " and " +
+         counted(solved.part_of_sensors.end - solved.part_of_sensors.begin, "sensor") +
+         "; clerestory merge puts all parts together";
+}
+
+/// Rooms and grids of a part are known when all parts are.
+void say_year(const Arguments& arguments, const YearSolved& solved, const AnnualReport& annual, const RunReport& report,
+              Console& console) {
   console.say(report.input + ": " + counted(report.counts.elements, "element") + ", " +
               counted(report.counts.points, "point") + ", " + counted(solved.hours.size(), "hour") + " of light by " +
               std::to_string(solved.sky_parts) + " parts of the sky and " + counted(solved.sun_nodes, "position") +
               " of the sun");
-  for (const std::string& line : lines_of(annual)) console.say("  " + line);
+  if (!arguments.part)
+    for (const std::string& line : lines_of(annual)) console.say("  " + line);
   const auto say_error = [&](const char* where, const std::optional<ErrorFigures>& e, const YearError& near_threshold) {
     if (e)
       console.say("  error   at " + std::string(where) + " in single hours " + (e->bound ? "below " : "") +
@@ -175,9 +224,13 @@ void say_year(const YearSolved& solved, const AnnualReport& annual, const RunRep
 }
 
 ExitCode annual_command(const Arguments& arguments, Console& console) {
+  if (const std::string problem = not_of_a_part(arguments); !problem.empty()) {
+    console.fail(problem);
+    return kWrongUsage;
+  }
   Lap lap;
   RunReport report = new_report(arguments.input);
-  check_writable(arguments.output);
+  check_writable(arguments.files.output);
   ReadOptions read = arguments.read;
   read.for_a_year = true;
   Scene scene = read_scene(arguments.input, read);
@@ -211,13 +264,16 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
   if (solved.error_points) report.error = figures_of(*solved.error_points);
   report.warnings = console.warnings();
   Outputs outputs;
-  write_outputs(arguments, scene, solved, annual, report, outputs);
+  if (arguments.part)
+    write_part(arguments, scene, settings, solved, annual, report, outputs);
+  else
+    write_year(arguments.files, written(scene, solved), solved, annual, all_sensor_points(scene.sensors), report,
+               outputs);
   finish_report(report, arguments.common, console, outputs);
-  say_year(solved, annual, report, console);
+  say_year(arguments, solved, annual, report, console);
   series.commit(scene, solved);
   console.commit(outputs);
-  console.say("  results " + arguments.output + ", " + beside(arguments.output, ".json").string() +
-              (solved.of_sensors.empty() ? "" : ", " + sensors_output(arguments).string()));
+  console.say("  results " + results_of(arguments, solved));
   return kDone;
 }
 
@@ -231,7 +287,7 @@ void add_annual_command(CLI::App& program, Task& task) {
   command.add_option("--weather", arguments->weather, "weather of a typical year")->type_name("CITY.epw")->required();
   command
       .add_option(
-          "-o,--output", arguments->output,
+          "-o,--output", arguments->files.output,
           "figures on every vertex, for ParaView; rooms and grids go into OUT.json, sensors into OUT.sensors.csv")
       ->type_name("OUT.vtp")
       ->required();
@@ -252,13 +308,16 @@ void add_annual_command(CLI::App& program, Task& task) {
                    "draft, standard or fine (default: standard)");
   command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")
       ->type_name("POINTS.csv");
-  command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")
+  command.add_option("--sensors-out", arguments->files.sensors_out, "where to (default: OUT.sensors.csv)")
       ->type_name("OUT.csv");
   command
       .add_option("--hours", arguments->hours, "illuminance of every sensor in every hour, as HDF5 or NumPy's files")
       ->type_name("FILE.h5|DIR");
   command.add_option("--honeybee", arguments->honeybee, "the same and its figures, as Ladybug Tools read them")
       ->type_name("DIR");
+  add_checked_word(command, "--part", arguments->part, problem_with_part,
+                   "part i of n of all points and sensors, into OUT.vtp alone; clerestory merge puts parts together")
+      ->type_name("I/N");
   add_positive_option(command, "--max-element", arguments->solve.max_element, "M",
                       "longest element edge in metres (default: by accuracy and size)");
   add_detail_option(command, arguments->solve.detail);
@@ -266,14 +325,12 @@ void add_annual_command(CLI::App& program, Task& task) {
   command.footer("example: clerestory annual data/scenes/office.json --weather city.epw -o office_year.vtp");
   command.callback([arguments, &task] {
     task = [arguments] {
-      std::vector<NamedFile> files = {
-          {"--weather", arguments->weather, false},
-          {"--sensors", arguments->sensors, false},
-          {"-o", arguments->output},
-          {"rooms and grids", beside(arguments->output, ".json").string(), true, "name another -o"},
-          {"the sensors' output", sensors_output(*arguments).string(), true, "name another: --sensors-out"},
-          {"--hours", arguments->hours},
-          {"--honeybee", arguments->honeybee}};
+      std::vector<NamedFile> files = {{"--weather", arguments->weather, false},
+                                      {"--sensors", arguments->sensors, false},
+                                      {"--hours", arguments->hours},
+                                      {"--honeybee", arguments->honeybee}};
+      for (const NamedFile& file : arguments->files.named())
+        if (!arguments->part || file.option == "-o") files.push_back(file);
       return run(arguments->common, arguments->input, std::move(files),
                  [&](Console& console) { return annual_command(*arguments, console); });
     };

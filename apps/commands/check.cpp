@@ -67,6 +67,8 @@ std::string describe(SkyModel model) {
       return "Perez";
     case SkyModel::image:
       return "image";
+    case SkyModel::mean:
+      return "mean of several";
   }
   return "";
 }

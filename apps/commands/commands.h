@@ -22,7 +22,9 @@ void add_bake_command(CLI::App& program, Task& task);
 void add_formfactors_command(CLI::App& program, Task& task);
 void add_tradeoff_command(CLI::App& program, Task& task);
 void add_report_command(CLI::App& program, Task& task);
+void add_mix_command(CLI::App& program, Task& task);
 void add_annual_command(CLI::App& program, Task& task);
+void add_merge_command(CLI::App& program, Task& task);
 void add_render_command(CLI::App& program, Task& task);
 
 }  // namespace clerestory

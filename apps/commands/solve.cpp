@@ -7,12 +7,16 @@
 #include "apps/finish_report.h"
 #include "apps/interrupt.h"
 #include "apps/run.h"
+#include "apps/series_report.h"
 #include "apps/solve_report.h"
 #include "io/atomic_file.h"
+#include "io/moment.h"
 #include "io/read_sensors.h"
 #include "io/write_debug.h"
 #include "io/write_result.h"
 #include "io/write_sensors.h"
+#include "io/write_series.h"
+#include "pipeline/at_time.h"
 #include "pipeline/collect_around.h"
 #include "pipeline/lap.h"
 #include "pipeline/solve_scene.h"
@@ -26,7 +30,7 @@ struct Arguments {
   CommonArguments common;
   SolveArguments solve;
   ReadOptions read;
-  std::string input, output, sensors, sensors_output;
+  std::string input, output, times, sensors, sensors_output;
 };
 
 std::filesystem::path sensors_output(const Arguments& arguments) {
@@ -34,7 +38,27 @@ std::filesystem::path sensors_output(const Arguments& arguments) {
   return std::filesystem::path(arguments.output).replace_extension(".sensors.csv");
 }
 
-bool lacks_layers(const Solved& solved) { return solved.settings.layers && solved.layers.light.empty(); }
+/// The result of one time of a series, beside it: day.2026-03-21T0600.vtp for day.pvd.
+std::filesystem::path file_at(const Arguments& arguments, const Moment& moment) {
+  std::string time = moment_text(moment);
+  std::erase(time, ':');
+  return std::filesystem::path(arguments.output).replace_extension("." + time + ".vtp");
+}
+
+/// Of the series asked for; none where it cannot be read, which is said when it is needed.
+std::vector<std::filesystem::path> files_of_times(const Arguments& arguments) {
+  std::vector<std::filesystem::path> files;
+  try {
+    if (!arguments.times.empty())
+      for (const Moment& moment : read_times(arguments.times, "--times")) files.push_back(file_at(arguments, moment));
+  } catch (const InputError&) {
+  }
+  return files;
+}
+
+bool lacks_layers(const Solved& solved) {
+  return (solved.settings.layers || !solved.layers.layers.empty()) && solved.layers.light.empty();
+}
 
 ExitCode exit_code(const Solved& solved) {
   if (solved.solution.stop == StopReason::interrupted) return kInterrupted;
@@ -90,40 +114,81 @@ SensorLayers sensor_layers(const RunReport& report, const Solved& solved) {
   return layers;
 }
 
-void write_outputs(const Arguments& arguments, const Scene& scene, const Solved& solved, const RunReport& report,
+/// A result a time, with its own report, and the series that names them; `report` learns of each.
+void write_times(const Arguments& arguments, const Scene& scene, const Solved& solved, RunReport& report,
+                 Outputs& outputs) {
+  std::vector<FileOfTime> files;
+  SensorLayers sensors;
+  sensors.E = solved.layers.sensor_E;
+  for (double& value : sensors.E.value) value *= static_cast<double>(scene.times.size());
+  for (std::size_t t = 0; t < scene.times.size(); ++t) {
+    const Moment& moment = scene.times[t].moment;
+    const std::filesystem::path file = file_at(arguments, moment);
+    const Scene scene_then = scene_at(scene, t);
+    const Solved solved_then = solved_at(solved, t);
+    RunReport of_time = new_report(report.input);
+    of_time.time = moment_text(moment);
+    fill_report(of_time, scene_then, solved_then);
+    of_time.settings = report.settings;
+    of_time.warnings = report.warnings;
+    write_result(outputs.open(file), solved_then.patches, solved_then.lightmap, solved_then.solution,
+                 collect_around(scene_then, solved_then), of_time);
+    report.times.push_back(figures_at_time(of_time, solved_then, file.filename().string()));
+    files.push_back({hours_since(scene.times.front().moment, moment), file.filename().string()});
+    sensors.names.push_back(of_time.time);
+  }
+  write_series(outputs.open(arguments.output), files);
+  if (solved.sensor_E.size() > 0)
+    write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E, {},
+                  sensors);
+}
+
+void write_outputs(const Arguments& arguments, const Scene& scene, const Solved& solved, RunReport& report,
                    Outputs& outputs) {
+  if (solved.settings.debug) write_debug(outputs, arguments.solve.debug_output, solved.debug, solved.patches.origin);
+  if (!scene.times.empty()) return write_times(arguments, scene, solved, report, outputs);
   write_result(outputs.open(arguments.output), solved.patches, solved.lightmap, solved.solution,
                collect_around(scene, solved), report, solved.layers.light);
   if (solved.sensor_E.size() > 0)
     write_sensors(outputs.open(sensors_output(arguments)), all_sensor_points(scene.sensors), solved.sensor_E,
                   solved.sensor_std_error, sensor_layers(report, solved));
-  if (solved.settings.debug) write_debug(outputs, arguments.solve.debug_output, solved.debug, solved.patches.origin);
+}
+
+/// What was asked for that only one method can; empty: nothing.
+std::string of_hierarchical_only(const Arguments& arguments, const Settings& settings) {
+  if (settings.debug) return "--debug-output shows";
+  if (settings.layers) return "--layers is of";
+  if (!arguments.times.empty()) return "--times is of";
+  if (settings.solve.oracle == Oracle::bf) return "--oracle bf is of";
+  return {};
 }
 
 ExitCode solve_command(const Arguments& arguments, Console& console) {
+  if (const bool is_series = std::filesystem::path(arguments.output).extension() == ".pvd";
+      is_series == arguments.times.empty()) {
+    console.fail(is_series
+                     ? "-o " + arguments.output + ": a .pvd is a series of results; give --times, or write a .vtp."
+                     : "-o " + arguments.output +
+                           ": with --times there are several results, and a .pvd names "
+                           "them; write one that ends in .pvd.");
+    return kWrongUsage;
+  }
   Lap lap;
   check_writable(arguments.output);
   RunReport report = new_report(arguments.input);
 
   end_without_result_after(arguments.solve.time_limit, console);
-  Scene scene = read_scene(arguments.input, arguments.read);
+  ReadOptions read_options = arguments.read;
+  if (!arguments.times.empty()) read_options.times = read_times(arguments.times, "--times");
+  Scene scene = read_scene(arguments.input, read_options);
   if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
   console.has_read(scene.files);
   Settings settings = effective_settings(arguments.common, arguments.solve, scene);
   end_without_result_after(settings.time_limit, console);
   settings.start = console.start();
-  if (settings.debug && settings.solve.method != Method::hierarchical) {
-    console.fail("--debug-output shows the hierarchical method only, and the method is " +
-                 std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
-    return kWrongUsage;
-  }
-  if (settings.layers && settings.solve.method != Method::hierarchical) {
-    console.fail("--layers is of the hierarchical method only, and the method is " +
-                 std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
-    return kWrongUsage;
-  }
-  if (settings.solve.oracle == Oracle::bf && settings.solve.method != Method::hierarchical) {
-    console.fail("--oracle bf is of the hierarchical method only, and the method is " +
+  if (const std::string option = of_hierarchical_only(arguments, settings);
+      !option.empty() && settings.solve.method != Method::hierarchical) {
+    console.fail(option + " the hierarchical method only, and the method is " +
                  std::string(kMethodNames[static_cast<std::size_t>(settings.solve.method)]) + ".");
     return kWrongUsage;
   }
@@ -142,10 +207,15 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   Lap writing;
   fill_report(report, scene, solved);
   report.settings = as_figures(solved.settings, solved.patches.channels, arguments.read);
+  if (!scene.times.empty()) report.settings.push_back({"times", arguments.times}), report.layers.clear();
   const ExitCode code = exit_code(solved);
   say_why(code, solved, console);
   if (has_sensors && solved.sensor_E.size() == 0)
     console.warn("there was no time for the sensors; " + sensors_output(arguments).string() + " is not written.");
+  if (lacks_layers(solved) && !scene.times.empty()) {
+    console.warn("stopped before the light was parted among the times; nothing is written.");
+    return code;
+  }
   if (lacks_layers(solved)) console.warn("there was no time for the layers; the result holds all light together only.");
   report.warnings = console.warnings();  // the result holds them, too
   Outputs outputs;
@@ -154,6 +224,10 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
   report.seconds.read = read, report.seconds.write = write;
   finish_report(report, arguments.common, console, outputs);
   say_summary(report, solved, console);
+  if (!scene.times.empty()) {
+    console.say("  times   " + series_in_words(scene.times) + "; what is above is of their mean light");
+    for (const std::string& line : time_table(report.times)) console.say("  " + line);
+  }
   console.commit(outputs);
   console.say("  results " + arguments.output +
               (solved.sensor_E.size() > 0 ? ", " + sensors_output(arguments).string() : "") +
@@ -167,8 +241,10 @@ void add_solve_command(CLI::App& program, Task& task) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *program.add_subcommand("solve", "read, mesh, solve, write: the main job");
   add_input_options(command, arguments->input, arguments->read);
-  command.add_option("-o,--output", arguments->output, "the result, for ParaView")->type_name("OUT.vtp")->required();
-  require_extension(command, "--output", {".vtp"});
+  command.add_option("-o,--output", arguments->output, "the result, for ParaView; .pvd with --times")
+      ->type_name("OUT.vtp")
+      ->required();
+  require_extension(command, "--output", {".vtp", ".pvd"});
   SolveArguments& s = arguments->solve;
   add_checked_word(
       command, "--method", s.method, problem_with_method,
@@ -200,6 +276,11 @@ void add_solve_command(CLI::App& program, Task& task) {
   add_detail_option(command, s.detail);
   command.add_flag("--layers", s.layers,
                    "also each group of luminaires and of glowing materials, sky and sun by itself, for clerestory mix");
+  command
+      .add_option("--times", arguments->times,
+                  "a series in one solve: sky and sun of each time, 2026-03-21T06:00/20:00/PT1H; one OUT.TIME.vtp each")
+      ->type_name("FROM/TO/STEP")
+      ->excludes("--layers");
   command.add_option("--sensors", arguments->sensors, "points to report on, x,y,z,nx,ny,nz in metres")
       ->type_name("POINTS.csv");
   command.add_option("--sensors-out", arguments->sensors_output, "where to (default: OUT.sensors.csv)")
@@ -220,6 +301,7 @@ void add_solve_command(CLI::App& program, Task& task) {
             {"the sensors' output", sensors_output(*arguments).string(), true, "name another: --sensors-out"});
       else
         files.push_back({"--sensors-out", arguments->sensors_output});
+      for (const auto& file : files_of_times(*arguments)) files.push_back({"--times", file.string()});
       if (!arguments->solve.debug_output.empty())
         for (const auto& file : debug_files(arguments->solve.debug_output))
           files.push_back({"--debug-output", file.string()});

@@ -2,6 +2,8 @@
 outdoors is left out, and one looks through the backs of walls into them.
 
 In ParaView: Macros > Import new macro, once; then open a result, press Apply, and press the macro's button.
+A result that was solved with --layers gets a calculator "Layers", which is the sum of them: write other factors than 1 into it and
+press Apply, and colours and lines follow.
 Without its window: pvpython clerestory_view.py RESULT.vtp PICTURE.png
 """
 import sys
@@ -29,11 +31,21 @@ def without_outdoors(source):
                             LowerThreshold=number - 0.5, UpperThreshold=number + 0.5, Invert=1)
 
 
+def with_factors(source):
+    """The sum of the layers in place of all light; the source itself where it has none, or one that no formula can name."""
+    layers = [array.Name for array in source.PointData if array.Name.startswith(SHOWN + ":")]
+    if not layers or any('"' in layer for layer in layers):
+        return source
+    terms = ['1*"%s"' % layer for layer in layers]
+    return simple.Calculator(registrationName="Layers", Input=source, AttributeType="Point Data", ResultArrayName=SHOWN,
+                             Function=" + ".join(terms))
+
+
 def show_result(source, view):
     source.UpdatePipeline()
     if source.PointData[SHOWN] is None:
         raise RuntimeError("there is no '%s' on the points: open a result of clerestory solve" % SHOWN)
-    shown = without_outdoors(source)
+    shown = without_outdoors(with_factors(source))
     shown.UpdatePipeline()
     low, high = shown.PointData[SHOWN].GetRange()
 

@@ -17,3 +17,7 @@ done
 "$program" render "$results/cornell_box.vtp" -o docs/pictures/view_fit.png --size 480x400
 "$program" render "$results/office.vtp" -o docs/pictures/view_fisheye.png --eye 2,4.6,1.5 --target 2,0,1.4 --fisheye \
   --show luminance --log-scale --size 480x480
+"$program" solve data/scenes/classroom.json -o "$results/classroom_layers.vtp" --layers --quiet
+"$program" mix "$results/classroom_layers.vtp" -o "$results/classroom_dimmed.vtp" --set windows=0 --set middle=0.5 --quiet
+"$program" render "$results/classroom_dimmed.vtp" -o docs/pictures/view_dimmed.png --plan 1.2 --show illuminance \
+  --isolux 50,100,200,300,400 --range 0:500 --size 520x410

@@ -77,9 +77,10 @@ std::string cells_of(const Plan& plan, const Scale& scale) {
       paths[here] += "M" + std::to_string(begin) + " " + std::to_string(row) + "h" + n + "v" + m + "h-" + n + "z";
     }
   const PlanPoint corner = lattice.place(-0.5, -0.5);
-  std::string out = text("<g stroke-width=\".06\" transform=\"matrix(", number(lattice.u.x * scale.px, 4), " ",
-                         number(-lattice.u.y * scale.px, 4), " ", number(lattice.v.x * scale.px, 4), " ",
-                         number(-lattice.v.y * scale.px, 4), " ", scale(corner), ")\">\n");
+  std::string out =
+      text("<g class=\"cells\" stroke-width=\".06\" transform=\"matrix(", number(lattice.u.x * scale.px, 4), " ",
+           number(-lattice.u.y * scale.px, 4), " ", number(lattice.v.x * scale.px, 4), " ",
+           number(-lattice.v.y * scale.px, 4), " ", scale(corner), ")\">\n");
   for (const auto& [shade, path] : paths)
     out += "<path fill=\"" + hex(shade) + "\" stroke=\"" + hex(shade) + "\" d=\"" + path + "\"/>\n";
   return out + "</g>\n";
@@ -243,19 +244,21 @@ std::string svg_of(const Plan& plan, std::size_t number_of_plan) {
   const Scale scale(plan);
   const double width = scale.width() + kLegend, height = std::max(scale.height(), 120.0) + kBelow;
   std::string out =
-      text("<svg class=\"plan\" role=\"img\" viewBox=\"0 0 ", number(width), " ", number(height), "\" width=\"",
-           number(width), "\">\n<title>", xml_text(plan.title), "</title>\n<clipPath id=\"frame-", number_of_plan,
-           "\"><rect x=\"0\" y=\"0\" width=\"", number(scale.width() + 2 * kEdge), "\" height=\"",
-           number(scale.height() + 2 * kEdge), "\"/></clipPath>\n<g clip-path=\"url(#frame-", number_of_plan, ")\">\n");
+      text("<svg class=\"plan\" role=\"img\"", plan.layers.empty() ? "" : text(" data-plan=\"", number_of_plan, "\""),
+           " viewBox=\"0 0 ", number(width), " ", number(height), "\" width=\"", number(width), "\">\n<title>",
+           xml_text(plan.title), "</title>\n<clipPath id=\"frame-", number_of_plan, "\"><rect x=\"0\" y=\"0\" width=\"",
+           number(scale.width() + 2 * kEdge), "\" height=\"", number(scale.height() + 2 * kEdge),
+           "\"/></clipPath>\n<g clip-path=\"url(#frame-", number_of_plan, ")\">\n");
   if (plan.lattice) out += cells_of(plan, scale);
   for (std::size_t i = 0; i < plan.dots.size(); i += 1 + plan.dots.size() / kMostDots) {
     const Plan::Dot& dot = plan.dots[i];
-    out += text("<circle cx=\"", number(scale.x(dot.at.x)), "\" cy=\"", number(scale.y(dot.at.y)), "\" r=\"5\" fill=\"",
-                hex(colour_of(plan, dot.lux)), "\"/>\n");
+    out += text("<circle class=\"dot\" cx=\"", number(scale.x(dot.at.x)), "\" cy=\"", number(scale.y(dot.at.y)),
+                "\" r=\"5\" fill=\"", hex(colour_of(plan, dot.lux)), "\"/>\n");
   }
   const auto [lines, labels] = isolux_of(plan, scale);
-  out += paths_of(plan.walls, "wall", scale) + paths_of(plan.panes, "pane", scale) + lines + marks_of(plan, scale) +
-         labels + "</g>\n" + legend_of(plan, scale, number_of_plan) + scale_bar(scale);
+  out += paths_of(plan.walls, "wall", scale) + paths_of(plan.panes, "pane", scale) + "<g class=\"lines\">" + lines +
+         "</g>\n" + marks_of(plan, scale) + "<g class=\"labels\">" + labels + "</g></g>\n" +
+         legend_of(plan, scale, number_of_plan) + scale_bar(scale);
   return out + "</svg>\n";
 }
 

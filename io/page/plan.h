@@ -35,6 +35,9 @@ struct Plan {
   double lowest = 0, highest = 1;  ///< of the colours [lx]
   bool by_logarithm = false;
   std::optional<double> target;  ///< its line is drawn stronger [lx]
+  /// Light of each layer at all places of the lattice, or at all dots, one layer after the other [lx]; a page with it
+  /// draws the plan anew while layers are dimmed. Empty: it has none.
+  std::vector<float> layers;
 };
 
 /// Levels of isolux lines between two illuminances: those that standards name (20, 30, 50, 75, 100 ...), at most 8;

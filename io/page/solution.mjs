@@ -1,5 +1,7 @@
 // The solution that a page carries (io/page/solution_data.h tells what is in it), unpacked.
 
+import { mixed } from './mixing.mjs';
+
 /** Base 64 of a zlib stream -> numbers, whose bytes of equal weight lie together. */
 export async function unpack(text, Numbers) {
   if (!text) return new Numbers(0);
@@ -34,6 +36,18 @@ export function luxOf(steps, [low, high]) {
   return lux;
 }
 
+/** Light of all layers, one after the other. */
+function layersOf(head, steps) {
+  const points = steps.length / head.layers.length;
+  const lux = new Float32Array(steps.length);
+  head.layers.forEach((range, layer) => lux.set(luxOf(steps.subarray(layer * points, (layer + 1) * points), range), layer * points));
+  return lux;
+}
+
+/** Linear light of sRGB bytes, and back. */
+const kLinear = Float32Array.from({ length: 256 }, (_, byte) => (byte <= 10.31475 ? byte / 3294.6 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
+const srgbByte = (x) => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * Math.min(x, 1) ** (1 / 2.4) - 0.055));
+
 export async function readSolution(page) {
   const text = (name) => page.getElementById(`solution-${name}`).textContent.trim();
   const head = JSON.parse(text('head'));
@@ -42,9 +56,30 @@ export async function readSolution(page) {
     unpack(text('corners'), Uint32Array), unpack(text('runs'), Uint32Array), unpack(text('panes'), Float32Array),
   ]);
   const corners = cornersOf(codes);
-  const lux = luxOf(steps, head.light);
+  const solved = luxOf(steps, head.light);
+  const lux = Float32Array.from(solved);
   const seen = head.channels === 1 ? new Uint8Array(3 * shades.length) : shades;
   if (head.channels === 1) for (let i = 0; i < seen.length; ++i) seen[i] = shades[Math.floor(i / 3)];
+  const seenSolved = Uint8Array.from(seen);
+  const layers = head.layers && layersOf(head, await unpack(text('layers'), Uint16Array));
+  const shares = await unpack(text('shares'), Uint8Array);
+  let isSolved = true;
+
+  /** Writes the light of the layers at these weights over `lux` and `seen`. Colours keep their hue. */
+  const relight = (weights, asSolved) => {
+    isSolved = asSolved;
+    if (asSolved) {
+      lux.set(solved);
+      seen.set(seenSolved);
+      return;
+    }
+    mixed(layers, weights, lux);
+    const left = shares.length > 0 && mixed(shares, weights);
+    for (let i = 0; i < lux.length; ++i) {
+      const share = left ? left[i] / 255 : lux[i] / Math.max(solved[i], 1e-30);
+      for (let k = 3 * i; k < 3 * i + 3; ++k) seen[k] = srgbByte(share * kLinear[seenSolved[k]]);
+    }
+  };
 
   /** What is known of a place on a triangle. */
   const at = (triangle, p) => {
@@ -66,8 +101,8 @@ export async function readSolution(page) {
       material: head.materials[runs[4 * run + 3]],
       place: [p.x, p.y, p.z].map((x, k) => x + head.centre[k]),
     };
-    if (head.daylightReference) found.daylightFactor = (100 * value) / head.daylightReference;
+    if (head.daylightReference && isSolved) found.daylightFactor = (100 * value) / head.daylightReference;
     return found;
   };
-  return { head, position, lux, seen, corners, panes, at };
+  return { head, position, lux, seen, corners, panes, at, relight };
 }

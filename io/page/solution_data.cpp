@@ -5,9 +5,8 @@
 #include <numeric>
 #include <tuple>
 
-#include <nlohmann/json.hpp>
-
 #include "io/page/css_colour.h"
+#include "io/page/embedded.h"
 #include "io/page/packed.h"
 #include "io/text.h"
 #include "solver/model/exposure.h"
@@ -81,6 +80,47 @@ Json parts_of(const WrittenResult& r, const Order& order) {
   return parts;
 }
 
+/// Illuminance in even steps of its logarithm: 0 is no light, 1 to kSteps go from low to high [lx].
+struct LightSteps {
+  double low = 0, high = 0;
+  std::vector<std::uint16_t> steps;
+};
+
+LightSteps steps_of(const std::vector<float>& lux, const Order& order) {
+  double brightest = 0;
+  for (const std::uint32_t p : order.points) brightest = std::max(brightest, double{lux[p]});
+  double darkest = brightest;
+  for (const std::uint32_t p : order.points)
+    if (lux[p] > 0) darkest = std::min(darkest, double{lux[p]});
+  darkest = std::max(darkest, kDarkest * brightest);
+  if (!(brightest > darkest)) brightest = darkest > 0 ? 2 * darkest : 1;
+  if (!(darkest > 0)) darkest = brightest / 2;
+
+  LightSteps light{darkest, brightest, {}};
+  light.steps.reserve(order.points.size());
+  for (const std::uint32_t p : order.points) {
+    const double t = std::log(std::max<double>(lux[p], darkest) / darkest) / std::log(brightest / darkest);
+    const auto step = 1 + std::lround((kSteps - 1) * std::min(t, 1.0));
+    light.steps.push_back(lux[p] < darkest * (1 - 1e-9) ? 0 : static_cast<std::uint16_t>(step));
+  }
+  return light;
+}
+
+/// How much of what leaves each point is the layer's, where the result tells that apart from what arrives.
+void add_shares(std::vector<std::uint8_t>& shares, const WrittenResult& r, const std::string& layer,
+                const Order& order) {
+  const auto B_layer = r.of_points.find(of_layer("radiosity", layer));
+  if (B_layer == r.of_points.end()) return;
+  const WrittenArray& B = r.of_points.at("radiosity");
+  const auto channels = static_cast<std::size_t>(B.components);
+  for (const std::uint32_t p : order.points) {
+    double part = 0, whole = 0;
+    for (std::size_t k = 0; k < channels; ++k)
+      part += B_layer->second.value[p * channels + k], whole += B.value[p * channels + k];
+    shares.push_back(static_cast<std::uint8_t>(std::lround(whole > 0 ? 255 * std::clamp(part / whole, 0.0, 1.0) : 0)));
+  }
+}
+
 std::vector<std::uint8_t> shades_of(const WrittenResult& r, const Order& order) {
   const double exposure = exposure_of(r, 0);
   const WrittenArray& B = r.of_points.at("radiosity");
@@ -92,24 +132,9 @@ std::vector<std::uint8_t> shades_of(const WrittenResult& r, const Order& order) 
   return shades;
 }
 
-/// JSON inside of a script element: nothing in it may look like an end of it.
-std::string embedded(const Json& json) {
-  std::string out;
-  for (const char c : json.dump(-1, ' ', true, Json::error_handler_t::replace))
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  return out;
-}
-
-std::string element(const char* name, const std::string& content) {
-  return text("<script type=\"text/plain\" id=\"solution-", name, "\">", content, "</script>\n");
-}
-
 template <class Number>
 std::string element_of(const char* name, const std::vector<Number>& numbers) {
-  return element(name, packed_by_bytes(std::span<const Number>(numbers)));
+  return embedded_text(text("solution-", name), packed_by_bytes(std::span<const Number>(numbers)));
 }
 
 Json names_of(const std::vector<std::string>& names) {
@@ -122,42 +147,37 @@ Json names_of(const std::vector<std::string>& names) {
 
 SolutionData solution_data(const WrittenResult& r, std::span<const double> levels, double low, double high) {
   const Order order = order_of(r);
-  const std::vector<float>& lux = r.of_points.at("illuminance").value;
+  const LightSteps light = steps_of(r.of_points.at("illuminance").value, order);
+  std::vector<std::uint16_t> layers;
+  std::vector<std::uint8_t> shares;
+  Json ranges = Json::array();
+  for (const ShownLayer& layer : r.around.layers) {
+    const LightSteps own = steps_of(r.of_points.at(of_layer("illuminance", layer.name)).value, order);
+    layers.insert(layers.end(), own.steps.begin(), own.steps.end());
+    ranges.push_back({own.low, own.high});
+    add_shares(shares, r, layer.name, order);
+  }
 
   Vec3 least = r.points[order.points[0]], most = least;
-  double brightest = 0, darkest = 0;
   for (const std::uint32_t p : order.points) {
     const Vec3& x = r.points[p];
     least = {std::min(least.x, x.x), std::min(least.y, x.y), std::min(least.z, x.z)};
     most = {std::max(most.x, x.x), std::max(most.y, x.y), std::max(most.z, x.z)};
-    brightest = std::max(brightest, double{lux[p]});
   }
   const Vec3 centre = (least + most) / 2;
-  darkest = brightest;
-  for (const std::uint32_t p : order.points)
-    if (lux[p] > 0) darkest = std::min(darkest, double{lux[p]});
-  darkest = std::max(darkest, kDarkest * brightest);
-  if (!(brightest > darkest)) brightest = darkest > 0 ? 2 * darkest : 1;
-  if (!(darkest > 0)) darkest = brightest / 2;
 
   std::vector<float> positions, panes;
   const auto add_place = [&](std::vector<float>& to, const Vec3& x) {
     const Vec3 d = x - centre;
     to.insert(to.end(), {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
   };
-  std::vector<std::uint16_t> light;
-  for (const std::uint32_t p : order.points) {
-    add_place(positions, r.points[p]);
-    const double t = std::log(std::max<double>(lux[p], darkest) / darkest) / std::log(brightest / darkest);
-    const auto step = 1 + std::lround((kSteps - 1) * std::min(t, 1.0));
-    light.push_back(lux[p] < darkest * (1 - 1e-9) ? 0 : static_cast<std::uint16_t>(step));
-  }
+  for (const std::uint32_t p : order.points) add_place(positions, r.points[p]);
   for (const PaneTriangle& pane : r.around.panes)
     for (const Vec3& x : pane.corners) add_place(panes, x);
 
   Json head = {{"centre", {centre.x, centre.y, centre.z}},
                {"channels", r.of_points.at("radiosity").components},
-               {"light", {darkest, brightest}},
+               {"light", {light.low, light.high}},
                {"range", {low, high}},
                {"levels", std::vector<double>(levels.begin(), levels.end())},
                {"rooms", r.room.empty() ? Json::array() : names_of(r.rooms)},
@@ -172,13 +192,15 @@ SolutionData solution_data(const WrittenResult& r, std::span<const double> level
     head["luminaires"].push_back({d.x, d.y, d.z});
   }
   for (int i = 0; i < kColours; ++i) head["colours"].push_back(css_colour(i / (kColours - 1.0)));
+  if (!layers.empty()) head["layers"] = ranges;
   if (r.around.daylight_reference) head["daylightReference"] = *r.around.daylight_reference;
 
   SolutionData data;
   for (const Json& part : head["parts"]) data.parts.push_back(part["name"]);
-  data.elements = element("head", embedded(head)) + element_of("positions", positions) + element_of("light", light) +
-                  element_of("shades", shades_of(r, order)) + element_of("corners", order.corners) +
-                  element_of("runs", order.runs) + element_of("panes", panes);
+  data.elements = embedded_json("solution-head", head) + element_of("positions", positions) +
+                  element_of("light", light.steps) + element_of("shades", shades_of(r, order)) +
+                  element_of("corners", order.corners) + element_of("runs", order.runs) + element_of("panes", panes) +
+                  element_of("layers", layers) + element_of("shares", shares);
   return data;
 }
 

@@ -7,6 +7,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
+import { startLayers } from './layers.mjs';
 import { readSolution } from './solution.mjs';
 
 const kMostLevels = 16;
@@ -166,6 +167,14 @@ class View {
     }));
   }
 
+  /** The light of the layers at these weights. */
+  relight(weights, asSolved) {
+    this.solution.relight(weights, asSolved);
+    for (const name of ['lux', 'seen']) this.surfaces.geometry.attributes[name].needsUpdate = true;
+    this.probed?.();
+    this.draw();
+  }
+
   /** Triangles of some rooms only: they lie together. */
   choosePart(part) {
     this.surfaces.geometry.setDrawRange(3 * part.begin, 3 * part.count);
@@ -231,9 +240,14 @@ class View {
     const ray = new Raycaster();
     ray.setFromCamera(at, this.camera);
     const hit = ray.intersectObject(this.surfaces).find((h) => h.point.z <= this.uniforms.cut.value);
-    const found = hit && this.solution.at(hit.faceIndex, hit.point);
     this.mark.visible = Boolean(hit);
     if (hit) this.mark.position.copy(hit.point);
+    this.probed = () => this.tell(hit && this.solution.at(hit.faceIndex, hit.point));
+    this.probed();
+    this.draw();
+  }
+
+  tell(found) {
     const out = byId('view-probe');
     out.replaceChildren();
     out.dataset.probe = JSON.stringify(found ?? null);
@@ -253,16 +267,16 @@ class View {
     } else {
       say('probe', 'no lit surface there');
     }
-    this.draw();
-    return found;
   }
 }
 
 async function start() {
   const status = byId('view-status');
+  let view;
+  startLayers((weights, asSolved) => view?.relight(weights, asSolved));
   try {
     const solution = await readSolution(document);
-    const view = new View(solution);
+    view = new View(solution);
     status.hidden = true;
     byId('view').dataset.ready = 'yes';
     byId('view').dataset.milliseconds = Math.round(performance.now());

@@ -16,7 +16,9 @@ struct PlaceAndTime {
   bool on_the_hour = false;  ///< time names an hour and neither minutes nor seconds
 };
 
-/// throws  InputError; a location has latitude, longitude and timezone, or north alone.
-PlaceAndTime read_place_and_time(const JsonObject& root, const std::string& file_name);
+/// instead  of the scene's own time, where there is one.
+/// throws   InputError; a location has latitude, longitude and timezone, or north alone.
+PlaceAndTime read_place_and_time(const JsonObject& root, const std::string& file_name,
+                                 const std::optional<Moment>& instead = {});
 
 }  // namespace clerestory

@@ -19,6 +19,7 @@
 #include "io/scene_file/room_entries.h"
 #include "io/scene_file/sensor_entries.h"
 #include "io/scene_file/sky_entries.h"
+#include "io/scene_file/sky_of_times.h"
 #include "io/text.h"
 #include "io/unit_vector.h"
 #include "solver/model/error.h"
@@ -146,8 +147,10 @@ Scene read_scene_file(const std::filesystem::path& file, const ReadOptions& opti
   std::vector<FixtureRule> fixtures = read_fixture_rules(root, name, folder, photometry, channels, scene);
   if (options.for_a_year)
     scene.ground_reflectance = read_ground(root, name);
-  else
+  else if (options.times.empty())
     scene.daylight = read_sky_entries(root, name, folder, channels, scene.lights, scene.warnings);
+  else
+    read_sky_of_times(root, name, folder, options.times, channels, scene);
   const PlaceAndTime at = read_place_and_time(root, name);
   scene.place = at.place;
   scene.north_deg = at.north_deg;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/formats/epw.h"
 #include "io/formats/read_sky_image.h"
 #include "io/formats/weather_light.h"
 #include "io/input_file.h"
@@ -73,10 +72,10 @@ struct ChosenHour {
 
 std::optional<JsonObject> sky_object(const JsonObject& root, const std::string& file_name) {
   if (!root.has("sky")) return {};
-  return JsonObject(root.at("sky"), file_name + ": sky",
-                    {"model", "horizontal_illuminance", "type", "ground_reflectance", "direct_normal",
-                     "diffuse_horizontal", "dew_point", "precipitable_water", "weather", "day_of_year", "hour", "image",
-                     "rotation"});
+  return JsonObject(
+      root.at("sky"), file_name + ": sky",
+      {"model", "horizontal_illuminance", "type", "ground_reflectance", "direct_normal", "diffuse_horizontal",
+       "dew_point", "precipitable_water", "weather", "day_of_year", "hour", "image", "rotation"});
 }
 
 double ground_of(const JsonObject& sky) {
@@ -84,9 +83,10 @@ double ground_of(const JsonObject& sky) {
   return sky.number("ground_reflectance", kGround).value_or(Sky{}.ground_reflectance);
 }
 
-SkyEntries read_entries(const JsonObject& root, const std::string& file_name, ChannelCount& channels) {
+SkyEntries read_entries(const JsonObject& root, const std::string& file_name, const TimeOfSeries* series,
+                        ChannelCount& channels) {
   SkyEntries read;
-  read.where_and_when = read_place_and_time(root, file_name);
+  read.where_and_when = read_place_and_time(root, file_name, series ? std::optional(series->moment) : std::nullopt);
   read.sky = sky_object(root, file_name);
   if (!root.has("sun")) return read;
   if (root.at("sun") == false) {
@@ -155,7 +155,7 @@ void check_sky(const JsonObject& sky) {
 
 /// Finds the hour of the weather file; place and time of the scene become those of the file where it says none.
 ChosenHour hour_of_weather(const JsonObject& root, const JsonObject& sky, const std::filesystem::path& folder,
-                           PlaceAndTime& at, std::vector<std::string>& warnings) {
+                           TimeOfSeries* series, PlaceAndTime& at, std::vector<std::string>& warnings) {
   const std::string named = *sky.word("weather");
   require_file(folder / named, sky.place("weather"), named);
   const bool by_day = sky.has("day_of_year") || sky.has("hour");
@@ -167,8 +167,13 @@ ChosenHour hour_of_weather(const JsonObject& root, const JsonObject& sky, const 
     throw InputError(text(root.place("time"), " is missing; which hour of the weather file? Write \"time\": ",
                           "\"2026-03-21T12:00\", or day_of_year and hour into the sky"));
   }
-  const Weather weather = read_epw(folder / named);
-  warnings.insert(warnings.end(), weather.warnings.begin(), weather.warnings.end());
+  std::optional<Weather> of_one_time;
+  std::optional<Weather>& kept = series ? series->weather : of_one_time;
+  if (!kept) {
+    kept = read_epw(folder / named);
+    warnings.insert(warnings.end(), kept->warnings.begin(), kept->warnings.end());
+  }
+  const Weather& weather = *kept;
   if (!at.place) {
     at.place = weather.place;
     warn_of_place(weather.file, *at.place, warnings);
@@ -295,8 +300,9 @@ void set_general_type(int type, Sky& sky) {
 
 /// A sun that has set gives no light: the ground is in its way.
 void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& direction, bool computed,
-             const std::string& file_name, LightSpec& lights, std::vector<std::string>& warnings) {
+             bool of_series, const std::string& file_name, LightSpec& lights, std::vector<std::string>& warnings) {
   if (direction.z <= 0 && computed) {
+    if (of_series) return;
     const Place& place = *entries.where_and_when.place;
     warnings.push_back(text(file_name, ": at this place and time the sun stands ",
                             -std::asin(direction.z) * 180 / std::numbers::pi,
@@ -315,8 +321,8 @@ void add_sun(const SkyEntries& entries, const Spectrum& irradiance, const Vec3& 
 
 std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::string& file_name,
                                          const std::filesystem::path& folder, ChannelCount& channels, LightSpec& lights,
-                                         std::vector<std::string>& warnings) {
-  SkyEntries entries = read_entries(root, file_name, channels);
+                                         std::vector<std::string>& warnings, TimeOfSeries* series) {
+  SkyEntries entries = read_entries(root, file_name, series, channels);
   PlaceAndTime& at = entries.where_and_when;
   if (at.place) warn_of_place(root.place("location"), *at.place, warnings);
   const std::optional<JsonObject>& object = entries.sky;
@@ -328,7 +334,7 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
     warn_of_idle_keys(*object, sky.model, warnings);
     sky.ground_reflectance = ground_of(*object);
     if (object->has("weather"))
-      hour = hour_of_weather(root, *object, folder, at, warnings);
+      hour = hour_of_weather(root, *object, folder, series, at, warnings);
     else if (sky.model == SkyModel::perez)
       hour = ChosenHour{hour_of_keys(*object), {}, {}};
   }
@@ -352,7 +358,11 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
     if (sky.model == SkyModel::perez) sky.shape = perez_shape(measured);
   }
   if (object && sky.model == SkyModel::image) {
-    set_image(*object, folder, at.north_deg, sky, channels, warnings);
+    if (series && series->image)
+      sky = *series->image;
+    else
+      set_image(*object, folder, at.north_deg, sky, channels, warnings);
+    if (series) series->image = sky;
   } else if (object && !hour) {
     set_illuminance(*object, sky, channels, warnings);
   }
@@ -378,7 +388,7 @@ std::optional<Daylight> read_sky_entries(const JsonObject& root, const std::stri
     }
     add_sun(entries,
             entries.sun_irradiance.value_or(Spectrum(hour ? *hour->light.direct_normal_lux / kWhiteEfficacy : 0)),
-            *to_sun, computed, file_name, lights, warnings);
+            *to_sun, computed, series != nullptr, file_name, lights, warnings);
     sun_used = true;
   }
   if ((at.time || root.has("location")) && !hour && !(sun_used && computed) && !(sky.image && at.north_deg != 0)) {

@@ -9,6 +9,7 @@
 #include "pipeline/annual/window_state.h"
 #include "pipeline/annual/year_areas.h"
 #include "pipeline/annual/year_error.h"
+#include "pipeline/annual/year_report.h"
 #include "pipeline/collect_around.h"
 #include "pipeline/prepare.h"
 #include "pipeline/require_valid.h"
@@ -87,8 +88,8 @@ std::vector<PlacesOfPoint> places_of(const SensorPlanes& sensors, const Vec3& or
   return points;
 }
 
-/// Part `part` of n things in `parts`: whole blocks, whose points share what they look at.
-std::pair<std::size_t, std::size_t> range_of_part(std::size_t n, std::size_t part, std::size_t parts) {
+/// Part `part` of n points in `parts`: whole blocks, whose points share what they look at.
+YearSolved::Range range_of_part(std::size_t n, std::size_t part, std::size_t parts) {
   const std::size_t blocks = (n + kBlock - 1) / kBlock;
   return {std::min(n, blocks * (part - 1) / parts * kBlock), std::min(n, blocks * part / parts * kBlock)};
 }
@@ -175,21 +176,6 @@ std::vector<const YearArea*> rooms_of_points(std::size_t points, const std::vect
   return of;
 }
 
-/// The result shows the mean light of the occupied hours.
-void show_mean(const YearRules& rules, const std::vector<PointYear>& of_points, Solved& solved) {
-  VertexLightmap& map = solved.lightmap;
-  for (std::size_t p = 0; p < of_points.size(); ++p)
-    map.E.set(p, Spectrum(of_points[p].lux_hours / rules.occupied_hours / kWhiteEfficacy));
-  const PatchSet& patches = solved.patches;
-  Solution& s = solved.solution;
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
-    Spectrum mean(0.0);
-    for (const std::uint32_t p : map.corners[i]) mean += map.E[p] / 3;
-    s.E.set(i, mean);
-  }
-  for (std::size_t i = 0; i < patches.patch_count(); ++i) s.B.set(i, patches.scattered(s.E, i));
-}
-
 }  // namespace
 
 YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSettings& settings, Observer& observer,
@@ -268,14 +254,14 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
 
   out.of_points.resize(points.size());
   out.of_sensors.resize(at_sensors.size());
-  const auto [first_sensor, last_sensor] = range_of_part(at_sensors.size(), settings.part, settings.parts);
-  const auto [first_point, last_point] = range_of_part(points.size(), settings.part, settings.parts);
+  out.part_of_sensors = range_of_part(at_sensors.size(), settings.part, settings.parts);
+  out.part_of_points = range_of_part(points.size(), settings.part, settings.parts);
   PointYears(states, out.rules, out.error_of_sensors, "sensors", monitor)
-      .run(at_sensors, first_sensor, last_sensor, of_sensors,
+      .run(at_sensors, out.part_of_sensors.begin, out.part_of_sensors.end, of_sensors,
            rooms_of_points(at_sensors.size(), out.grids, set_of_sensors(scene.sensors)), true, take, out.of_sensors);
   PointYears(states, out.rules, out.error_of_points, "points", monitor)
       .run(
-          points, first_point, last_point, of_points,
+          points, out.part_of_points.begin, out.part_of_points.end, of_points,
           rooms_of_points(points.size(), out.rooms, room_of_points(out.solved.patches, out.solved.lightmap, out.rooms)),
           false, take, out.of_points);
   show_mean(out.rules, out.of_points, out.solved);

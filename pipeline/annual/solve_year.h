@@ -54,6 +54,10 @@ struct YearSolved {
   std::vector<int> hours;  ///< H, of the year
   std::size_t sky_parts = 0, sun_nodes = 0;
   std::vector<PointYear> of_points, of_sensors;  ///< those of the part that was asked for; others have no hours
+  struct Range {
+    std::size_t begin = 0, end = 0;
+  };
+  Range part_of_points, part_of_sensors;
   std::vector<YearArea> rooms, grids;
   YearError error_of_points, error_of_sensors;              ///< that figures' low and high are of
   std::optional<ErrorFigures> error_points, error_sensors;  ///< of illuminances in single hours

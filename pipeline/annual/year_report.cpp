@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "pipeline/wording.h"
+#include "solver/model/units.h"
 
 namespace clerestory {
 namespace {
@@ -47,8 +48,26 @@ AnnualReport annual_report(const Scene& scene, const DaylightYear& year, const s
   report.threshold = solved.rules.threshold;
   report.blinds_operated = solved.has_blinds;
   report.error_rooms = solved.error_of_points, report.error_grids = solved.error_of_sensors;
-  report.rooms = told(solved.rooms), report.grids = told(solved.grids);
+  tell_areas(solved, report);
   return report;
+}
+
+void tell_areas(const YearSolved& solved, AnnualReport& report) {
+  report.rooms = told(solved.rooms), report.grids = told(solved.grids);
+}
+
+void show_mean(const YearRules& rules, const std::vector<PointYear>& of_points, Solved& solved) {
+  VertexLightmap& map = solved.lightmap;
+  for (std::size_t p = 0; p < of_points.size(); ++p)
+    map.E.set(p, Spectrum(of_points[p].lux_hours / rules.occupied_hours / kWhiteEfficacy));
+  const PatchSet& patches = solved.patches;
+  Solution& s = solved.solution;
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    Spectrum mean(0.0);
+    for (const std::uint32_t p : map.corners[i]) mean += map.E[p] / 3;
+    s.E.set(i, mean);
+  }
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) s.B.set(i, patches.scattered(s.E, i));
 }
 
 void add_figures(const YearSolved& solved, WrittenResult& result) {

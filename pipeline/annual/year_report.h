@@ -14,6 +14,12 @@ namespace clerestory {
 AnnualReport annual_report(const Scene& scene, const DaylightYear& year, const std::string& schedule,
                            const YearSolved& solved);
 
+/// Rooms and grids with their figures into the report.
+void tell_areas(const YearSolved& solved, AnnualReport& report);
+
+/// Sets the light of lightmap and solution to the mean of the occupied hours.
+void show_mean(const YearRules& rules, const std::vector<PointYear>& of_points, Solved& solved);
+
 /// Figures as arrays of points, and of cells the mean of their corners; names as year_figures() has them.
 void add_figures(const YearSolved& solved, WrittenResult& result);
 

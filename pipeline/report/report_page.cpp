@@ -5,6 +5,7 @@
 
 #include "io/input_file.h"
 #include "io/page/html_table.h"
+#include "io/page/plan_data.h"
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
 #include "pipeline/report/page_sections.h"
@@ -125,6 +126,9 @@ std::string report_page(const WrittenResult& result, const RunReport& run, const
                           "</style>\n</head>\n<body>\n<header>\n<h1>", xml_text(project),
                           "</h1>\n<p class=\"soft\">Lighting report, computed by Clerestory ", xml_text(run.version),
                           "</p>\n", contents_of(body), "</header>\n", key_figures(rooms, sets, result, run));
+  std::vector<std::string> names;
+  for (const ShownLayer& layer : result.around.layers) names.push_back(layer.name);
+  if (!names.empty() && !files.viewer.empty()) page += layer_sliders(names);
   page += body;
   page += text("<footer>\n<p>Illuminance is in lux (lm/m2), luminous flux in lumen, lengths in metres. Figures of ",
                "rooms and surfaces are of their sides that light can reach, means by area.</p>\n");

@@ -119,6 +119,7 @@ std::string daylight_section(const WrittenResult& result, const RunReport& run,
     facts.emplace_back("Illuminance on open ground", lux_words(*around.daylight_reference) + " lx");
   if (run.daylight) {
     const Daylight& d = *run.daylight;
+    if (!run.time.empty()) facts.emplace_back("At", run.time);
     if (d.weather)
       facts.emplace_back("Weather", text(short_name(d.weather->file), ", month ", d.weather->month, ", day ",
                                          d.weather->day, ", the hour that ends at ", d.weather->hour, ":00"));

@@ -2,6 +2,7 @@
 // Where a plane cuts triangles.
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "io/page/html_table.h"
+#include "io/page/plan_data.h"
 #include "io/text.h"
 #include "pipeline/report/page_sections.h"
 #include "pipeline/report/plans.h"
@@ -15,8 +16,12 @@ constexpr std::size_t kMostPlans = 60, kMostPlanBytes = 6'000'000;  ///< more ca
 constexpr std::size_t kMostSets = 300;
 constexpr std::size_t kMostFloors = 8;
 
-std::string figure_of(const Plan& plan, const std::string& caption, std::size_t& plans) {
-  return "<figure>\n" + svg_of(plan, ++plans) + "<figcaption>" + xml_text(caption) + "</figcaption>\n</figure>\n";
+/// set  number of the set of sensors in the table above
+std::string figure_of(const Plan& plan, const std::string& caption, std::size_t& plans, const std::string& name,
+                      std::optional<std::size_t> set = {}) {
+  ++plans;
+  return "<figure>\n" + svg_of(plan, plans) + "<figcaption>" + xml_text(caption) + "</figcaption>\n" +
+         plan_data(plan, plans, name, set) + "</figure>\n";
 }
 
 /// What the lines of a plan mean.
@@ -52,10 +57,10 @@ std::string verdict_on(const SensorSummary& s) {
   if (!s.threshold) return "";
   const double target = s.threshold->lux;
   const bool met = s.mean >= target;
-  return text("<p><span class=\"", met ? "met" : "missed", "\">", met ? "mean at or above" : "mean below",
-              " the target</span> The mean is ", lux_words(s.mean), " lx where ", lux_words(target),
-              " lx are asked for; ", percent(s.threshold->share), " of the points have ", lux_words(target),
-              " lx or more.</p>\n");
+  return text("<p class=\"verdict\"><span class=\"", met ? "met" : "missed", "\">",
+              met ? "mean at or above" : "mean below", " the target</span> <span>The mean is ", lux_words(s.mean),
+              " lx where ", lux_words(target), " lx are asked for; ", percent(s.threshold->share),
+              " of the points have ", lux_words(target), " lx or more.</span></p>\n");
 }
 
 }  // namespace
@@ -93,7 +98,7 @@ std::string sensor_section(const WrittenResult& result, const std::vector<Sensor
                              percent(s.daylight_factor->share)});
     table.add(row);
   }
-  std::string out = "<section>\n<h2 id=\"sensors\">Illuminance at sensors</h2>\n" + table.html();
+  std::string out = "<section class=\"reacts\">\n<h2 id=\"sensors\">Illuminance at sensors</h2>\n" + table.html();
   if (sets.size() > kMostSets)
     out += "<p class=\"soft\">" + and_more(sets.size() - kMostSets) + " sets of sensors.</p>\n";
   out += "<p class=\"soft\">U0 is the uniformity, least over mean illuminance.";
@@ -107,7 +112,7 @@ std::string sensor_section(const WrittenResult& result, const std::vector<Sensor
     ++shown;
     const Plan plan = plan_of(result, sensors, s.threshold ? std::optional(s.threshold->lux) : std::optional<double>());
     out += "<h3>" + xml_text(s.name) + "</h3>\n" + verdict_on(s) +
-           figure_of(plan, kind_words(s.kind) + key_of(plan), plans);
+           figure_of(plan, kind_words(s.kind) + key_of(plan), plans, s.name, at - 1);
   }
   if (at > shown) out += "<p class=\"soft\">Plans " + and_more(at - shown) + " are left out.</p>\n";
   return out + "</section>\n";
@@ -117,12 +122,13 @@ std::string floor_section(const WrittenResult& result, std::size_t& plans) {
   const std::vector<FloorPlan> floors = floor_plans(result, kMostFloors);
   if (floors.empty()) return {};
   std::string out =
-      "<section>\n<h2 id=\"floors\">Floors</h2>\n<p>The scene has no sensors. These are the horizontal surfaces where "
+      "<section class=\"reacts\">\n<h2 id=\"floors\">Floors</h2>\n<p>The scene has no sensors. These are the "
+      "horizontal surfaces where "
       "most of "
       "them lie.</p>\n";
   for (const FloorPlan& floor : floors)
     out += text("<h3>At ", std::round(100 * floor.height) / 100 + 0.0, " m</h3>\n",
-                figure_of(floor.plan, area_words(floor.area) + " m2. " + key_of(floor.plan), plans));
+                figure_of(floor.plan, area_words(floor.area) + " m2. " + key_of(floor.plan), plans, floor.plan.title));
   return out + "</section>\n";
 }
 

@@ -45,7 +45,7 @@ std::pair<double, double> range_of(const WrittenResult& r) {
 }  // namespace
 
 std::string view_section(const WrittenResult& result, const PageFiles& files) {
-  std::string out = "<section>\n<h2 id=\"view-3d\">3D view</h2>\n";
+  std::string out = "<section class=\"reacts\">\n<h2 id=\"view-3d\">3D view</h2>\n";
   if (files.viewer.empty()) return out + "<p class=\"soft\">This page was made without the 3D view.</p>\n</section>\n";
   const auto [low, high] = range_of(result);
   const std::vector<double> levels = isolux_levels(low, high);

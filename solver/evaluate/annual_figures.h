@@ -12,8 +12,6 @@
 
 namespace clerestory {
 
-inline constexpr std::size_t kMostThresholds = 4;  ///< besides that of daylight autonomy
-
 /// Which hours count, and of how many. Light is given for H hours of the year; all others are dark, and stay in the
 /// divisors.
 struct YearRules {
@@ -30,18 +28,6 @@ struct YearRules {
 YearRules year_rules(std::span<const int> hours, std::span<const double> diffuse,
                      std::span<const std::uint8_t> is_occupied, double threshold = 300,
                      std::vector<double> more_thresholds = {});
-
-/// One point in hours, of which each figure is a share. low and high: what it would be if all illuminances were wrong
-/// by their error, down or up.
-struct PointYear {
-  std::uint16_t DA = 0, DA_low = 0, DA_high = 0;            ///< occupied hours with E >= threshold
-  std::uint16_t UDI_lit = 0, UDI_upper = 0;                 ///< occupied hours with E >= 100 and E > 3000 lx
-  std::uint16_t ASE = 0, ASE_low = 0, ASE_high = 0;         ///< occupied hours with more than 1000 lx of direct sun
-  std::array<std::uint16_t, kEn17037Lux.size()> EN17037{};  ///< daylight hours with E >= 100, 300, 500, 750 lx
-  std::array<std::uint16_t, kMostThresholds> at_least{};    ///< occupied hours with E >= YearRules::more_thresholds
-  double cDA = 0;                                           ///< sum of min(1, E / threshold) over occupied hours [h]
-  double lux_hours = 0;                                     ///< sum of E over occupied hours [lx h]
-};
 
 /// total, direct  illuminance of all light, and of direct sun with blinds open, by hour [lx], H each; direct may be
 ///                empty: no sun comes here.

@@ -34,6 +34,13 @@ void add_leaves_under(const ElementMesh& mesh, std::uint32_t e, std::vector<std:
   }
 }
 
+/// By number of the light among sharp_lights(), suns first. A sun of one of several times has its share of their mean,
+/// and at its time as many times more.
+double least_contrast(const Lights& lights, std::size_t number) {
+  const bool is_of_a_time = number < lights.suns.size() && lights.suns[number].time;
+  return is_of_a_time ? kContrast / static_cast<double>(lights.times) : kContrast;
+}
+
 class PointSet {
  public:
   bool operator[](std::uint32_t point) const { return point < is_in_.size() && is_in_[point]; }
@@ -212,12 +219,15 @@ ShadowEdges cut_shadow_edges(ElementMesh& mesh, const Problem& problem, const Fi
   const std::vector<std::uint32_t> leaves = mesh.leaves();  // as they were
   std::vector<char> worth(leaves.size());
   const auto most_lights = static_cast<std::size_t>(kMostPairs / static_cast<double>(leaves.size() + 1)) + 1;
-  for (const SharpLight& light : sharp_lights(problem, most_lights)) {
+  const std::vector<SharpLight> lights = sharp_lights(problem, most_lights);
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    const SharpLight& light = lights[k];
+    const double contrast = least_contrast(problem.lights, k);
     parallel_for(leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end && !monitor.should_stop(); ++i) {
         const LeafInLight leaf_in_light(mesh, leaves[i]);
         worth[i] =
-            light.open_irradiance(leaf_in_light.centre(), leaf_in_light.normal()) > kContrast * luminous_mean(E[i]) &&
+            light.open_irradiance(leaf_in_light.centre(), leaf_in_light.normal()) > contrast * luminous_mean(E[i]) &&
             light.may_reach(leaf_in_light.corners());
       }
     });

@@ -25,7 +25,7 @@ struct ShadowEdges {
 /// of the penumbra, each found on the element's edges by bisection: between them light falls evenly from all to
 /// nothing, beyond them nothing changes. Elements through which an edge does not run straight, from one of their edges
 /// to another, are halved until it does or they are small. Lights that give less than 0.35 of an element's irradiance
-/// draw no edge there.
+/// draw no edge there; those of one of several times, less than that of what it has in the mean of them.
 ///
 /// Penumbrae narrower than 2 % of an element, but no more than 5 mm, are taken for that wide, so that parts are no
 /// thinner; what comes closer to a corner than half of that goes through the corner. No cut makes an angle below 0.6

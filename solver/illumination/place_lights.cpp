@@ -10,6 +10,7 @@ namespace clerestory {
 Lights to_local_frame(const LightSpec& spec, const Vec3& origin) {
   Lights lights;
   lights.sky = spec.sky;
+  lights.times = spec.times;
   for (Luminaire luminaire : spec.luminaires) {
     luminaire.position -= origin;
     lights.luminaires.push_back({std::move(luminaire)});

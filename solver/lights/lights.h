@@ -55,6 +55,7 @@ struct Lights {
   std::vector<PlacedLuminaire> luminaires;  ///< the scene's, then images
   std::optional<Sky> sky;
   std::vector<PlacedSun> suns;      ///< the scene's, then images
+  std::size_t times = 1;            ///< as of LightSpec
   double lost_in_mirrors = 0;       ///< about the share of luminaires' and suns' light on ways that have no image [1]
   std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
 

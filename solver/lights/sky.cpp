@@ -5,7 +5,7 @@
 
 namespace clerestory {
 
-SkyRadiance::SkyRadiance(const Lights& lights) {
+SkyRadiance::SkyRadiance(const Lights& lights, double scale) {
   if (!lights.sky) return;
   constexpr double pi = std::numbers::pi;
   const Sky& sky = *lights.sky;
@@ -23,6 +23,16 @@ SkyRadiance::SkyRadiance(const Lights& lights) {
       kind_ = Kind::image;
       image_ = sky.image;
       image_has_ground_ = sky.image_has_ground;
+      image_scale_ = scale;
+      break;
+    case SkyModel::mean:
+      kind_ = Kind::mean;
+      for (const Sky& part : sky.parts) {
+        Lights alone;
+        alone.sky = part;
+        if (!part.horizontal_irradiance.is_black())
+          parts_.emplace_back(alone, scale / static_cast<double>(sky.parts.size()));
+      }
       break;
     case SkyModel::cie_clear:
     case SkyModel::cie_general:
@@ -35,7 +45,8 @@ SkyRadiance::SkyRadiance(const Lights& lights) {
   Spectrum horizontal = sky.horizontal_irradiance;
   for (const PlacedSun& sun : lights.suns)
     if (!sun.is_image()) horizontal += sun.normal_irradiance * std::max(0.0, sun.direction.z);
-  ground_ = horizontal * (sky.ground_reflectance / pi);
+  zenith_ *= scale;
+  ground_ = horizontal * (scale * sky.ground_reflectance / pi);
 }
 
 }  // namespace clerestory

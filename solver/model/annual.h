@@ -1,8 +1,9 @@
 #pragma once
-// What is told of a year of daylight: the limits of the standards, and the figures of a room or a grid.
+// What is told of a year of daylight: the limits of the standards, and the figures of a point, a room or a grid.
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,23 @@ inline constexpr double kUsefulLux[2] = {100, 3000};  ///< UDI: useful from the 
 inline constexpr double kSunLux = 1000;               ///< ASE: above it; blinds: from it on
 inline constexpr int kSunHours = 250;                 ///< of ASE
 inline constexpr std::array<double, 4> kEn17037Lux = {100, 300, 500, 750};
+inline constexpr std::size_t kMostThresholds = 4;  ///< besides that of daylight autonomy
 
 enum class En17037Level { none, minimum, medium, high };
 /// In the order of the enumerators.
 inline constexpr const char* kEn17037LevelNames[] = {"none", "minimum", "medium", "high"};
+
+/// One point in hours, of which each figure is a share. low and high: what it would be if all illuminances were wrong
+/// by their error, down or up.
+struct PointYear {
+  std::uint16_t DA = 0, DA_low = 0, DA_high = 0;            ///< occupied hours with E >= threshold
+  std::uint16_t UDI_lit = 0, UDI_upper = 0;                 ///< occupied hours with E >= 100 and E > 3000 lx
+  std::uint16_t ASE = 0, ASE_low = 0, ASE_high = 0;         ///< occupied hours with more than 1000 lx of direct sun
+  std::array<std::uint16_t, kEn17037Lux.size()> EN17037{};  ///< daylight hours with E >= 100, 300, 500, 750 lx
+  std::array<std::uint16_t, kMostThresholds> at_least{};    ///< occupied hours with E >= further thresholds
+  double cDA = 0;                                           ///< sum of min(1, E / threshold) over occupied hours [h]
+  double lux_hours = 0;                                     ///< sum of E over occupied hours [lx h]
+};
 
 /// A share of area [%], and where it lies under the errors of the illuminances.
 struct ShareWithin {

@@ -58,7 +58,7 @@ struct Luminaire {
   std::variant<PointLuminaire, SpotLuminaire, WebLuminaire> kind;
 };
 
-enum class SkyModel { uniform, cie_overcast, cie_clear, cie_general, perez, image };
+enum class SkyModel { uniform, cie_overcast, cie_clear, cie_general, perez, image, mean };
 
 /// Sky of luminance distribution `model`, scaled to a horizontal irradiance; virtual ground below the horizon.
 struct Sky {
@@ -69,12 +69,14 @@ struct Sky {
   Vec3 sun{0, 0, 1};                        ///< unit, to the sun that the shape is bright around
   std::shared_ptr<const SkyImage> image{};  ///< of model image, in the radiance that it shows
   bool image_has_ground = false;            ///< the lower half of the image takes the place of the virtual ground
+  std::vector<Sky> parts{};                 ///< of model mean: each counts the same, dark ones too
 };
 
 /// Sun: a disc of 0.533 degrees of uniform radiance.
 struct Sun {
-  Vec3 direction;              ///< unit, to the sun
-  Spectrum normal_irradiance;  ///< on a plane that faces the sun [W/m2]
+  Vec3 direction;                     ///< unit, to the sun
+  Spectrum normal_irradiance;         ///< on a plane that faces the sun [W/m2]
+  std::optional<std::size_t> time{};  ///< of LightSpec::times, that it shines at; none: at all of them
 };
 
 /// Light as a scene has it: what is computed of it is in solver/lights/lights.h.
@@ -82,6 +84,7 @@ struct LightSpec {
   std::vector<Luminaire> luminaires;
   std::optional<Sky> sky;
   std::vector<Sun> suns;  ///< the scene's sun, and directional lights of a glTF file
+  std::size_t times = 1;  ///< that this is the mean of, see light_of_times.h
 
   bool empty() const { return luminaires.empty() && !sky && suns.empty(); }
 };

@@ -33,7 +33,7 @@ struct Material {
   std::optional<Spectrum> total_power;  ///< [W] shared over the sides that carry the material; replaces exitance
   std::optional<Blinds> blinds{};       ///< of glass
   int sides = 2;                        ///< 1: the back (wound clockwise) is black and does not emit
-  std::string group;                    ///< of what glows: switched and dimmed together; may be empty
+  std::string group{};                  ///< of what glows: switched and dimmed together; may be empty
 
   friend bool operator==(const Material&, const Material&) = default;
 

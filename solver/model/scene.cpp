@@ -15,11 +15,16 @@ void for_each_colour_of_materials(Materials& materials, const Visit& visit) {
     if (m.total_power) visit(*m.total_power);
   }
 }
+template <class AnySky, class Visit>
+void for_each_colour_of_sky(AnySky& sky, const Visit& visit) {
+  visit(sky.horizontal_irradiance);
+  for (auto& part : sky.parts) for_each_colour_of_sky(part, visit);
+}
 template <class AnyLights, class Visit>
 void for_each_colour_of_lights(AnyLights& lights, const Visit& visit) {
   for (auto& l : lights.luminaires) std::visit([&](auto& kind) { visit(kind.colour()); }, l.kind);
   for (auto& s : lights.suns) visit(s.normal_irradiance);
-  if (lights.sky) visit(lights.sky->horizontal_irradiance);
+  if (lights.sky) for_each_colour_of_sky(*lights.sky, visit);
 }
 
 const auto kToGrey = [](Spectrum& s) { s = Spectrum(luminous_mean(s)); };

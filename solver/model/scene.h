@@ -61,6 +61,12 @@ struct Daylight {
   std::optional<Hour> weather;  ///< that sun and sky have their light from
 };
 
+/// One of several times that a scene is lit for.
+struct SceneTime {
+  Moment moment;
+  Daylight daylight;  ///< as of Scene::daylight
+};
+
 /// Things of one kind in a model that its reader did not use or understand.
 struct NotRead {
   std::string what;
@@ -85,6 +91,7 @@ struct Scene {
   LightSpec lights;
   double ground_reflectance = 0.2;   ///< of the virtual ground, where the scene was read for a year [1]
   std::optional<Daylight> daylight;  ///< empty: no sun, and no sky that depends on one
+  std::vector<SceneTime> times;      ///< that `lights` are the mean of; empty: as they are
   std::optional<Place> place;        ///< on earth, as the scene file says it
   double north_deg = 0;              ///< of the scene's north, clockwise from +y, as the scene file says it
   std::vector<SensorSet> sensors;

@@ -18,4 +18,14 @@ Spectrum SkyTable::operator()(const Vec3& d) const {
          (at(row + 1, column) * (1 - u) + at(row + 1, column + 1) * u) * v;
 }
 
+std::vector<double> illuminance_of_layer(const SceneAround& around, const MeasuredSensors& sensors, std::size_t layer) {
+  const std::size_t channels = static_cast<std::size_t>(sensors.layers.channels) / around.layers.size();
+  std::vector<double> lux;
+  for (std::size_t i = 0; i < sensors.layers.size(); ++i) {
+    const double* E = &sensors.layers.value[(i * around.layers.size() + layer) * channels];
+    lux.push_back(photometric(channels == 1 ? Spectrum(E[0]) : Spectrum(E[0], E[1], E[2])));
+  }
+  return lux;
+}
+
 }  // namespace clerestory

@@ -75,4 +75,7 @@ struct SceneAround {
   std::vector<std::string> files{};  ///< that the scene was read from, as they were named
 };
 
+/// Illuminance of the sensors in layer number `layer` [lx], one a point.
+std::vector<double> illuminance_of_layer(const SceneAround& around, const MeasuredSensors& sensors, std::size_t layer);
+
 }  // namespace clerestory

@@ -62,6 +62,7 @@ enum Stream : std::uint64_t {
   // Rooms, by patch and sweep; in the seed's place as well.
   kRoomRays = 0x85,
   kRoomOrder = 0x86,
+  kRoomSides = 0x87,
   // Hierarchy, by receiver, element or link.
   kBundle = 0x91,
   kBrightPairs = 0x92,

@@ -19,6 +19,12 @@ struct WrittenArray {
   std::vector<float> value;
 };
 
+/// n rows of `components` numbers each, exactly.
+struct WrittenTable {
+  int components = 1;
+  std::vector<double> value;
+};
+
 /// Name of a layer's own array: "irradiance:desk".
 inline std::string of_layer(const char* array, const std::string& layer) { return array + (":" + layer); }
 
@@ -38,6 +44,10 @@ struct WrittenResult {
   std::vector<std::string> surfaces, rooms;      ///< names
   SceneAround around;
   std::string report;  ///< the run's report as JSON, without times and memory
+
+  /// Of a part of a year what io/annual/year_part_tables.h makes of it: JSON, and numbers by name. Others have none.
+  std::string year_part;
+  std::map<std::string, WrittenTable> year_tables;
 
   int channels() const { return of_points.at("irradiance").components; }
 };

@@ -221,8 +221,42 @@ bool contains(const NamedSpace& space, const Vec3& p) {
                              [&](const SpaceSpan& s) { return s.floor < p.z && p.z < s.ceiling; });
 }
 
+/// Share of the rays from all over a patch that meet nothing.
+double share_that_escapes(const Problem& problem, std::size_t i) {
+  constexpr std::uint32_t kRaysOfSide = 64;
+  const Vec3 n = problem.patches.normal[i];
+  const Frame frame(n);
+  const auto corners = problem.patches.corner_positions(PatchId{i});
+  int escaped = 0;
+  for (std::uint32_t k = 0; k < kRaysOfSide; ++k) {
+    const auto u = sobol4(k, stream_key(kRoomSides, i));
+    const Vec3 p = problem.rays.off_surface(point_on_triangle(corners, u[0], u[1]), n);
+    escaped += problem.rays.first_hit(problem.patches, {p, cosine_direction(frame, u[2], u[3])}).escaped();
+  }
+  return escaped / double{kRaysOfSide};
+}
+
+/// A wall of a single sheet that a room is named by has the room on one side only: the other, which looks more into the
+/// open, loses the name.
+void unname_outer_sides(const Problem& problem, std::size_t first, std::vector<std::uint32_t>& room) {
+  constexpr double kMore = 0.25;
+  const PatchSet& patches = problem.patches;
+  std::vector<std::uint8_t> open(room.size());
+  parallel_for(room.size(), 64, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      if (room[i] == kNone || room[i] < first) continue;
+      const PatchId other = patches.side_patch[patches.triangle[i]][patches.side[i] == kFront ? kBack : kFront];
+      if (!other.valid() || room[other] != room[i]) continue;
+      open[i] = share_that_escapes(problem, i) > share_that_escapes(problem, other.value) + kMore;
+    }
+  });
+  for (std::size_t i = 0; i < room.size(); ++i)
+    if (open[i]) room[i] = kNone;
+}
+
 /// The named room of each patch, or kNone.
-std::vector<std::uint32_t> named_room_of(const PatchSet& patches, const NamedRooms& named) {
+std::vector<std::uint32_t> named_room_of(const Problem& problem, const NamedRooms& named) {
+  const PatchSet& patches = problem.patches;
   std::vector<std::uint32_t> room(patches.patch_count(), kNone);
   std::vector<Box> boxes;
   for (const NamedSpace& space : named.spaces) boxes.push_back(Box::around(space.vertices));
@@ -241,6 +275,7 @@ std::vector<std::uint32_t> named_room_of(const PatchSet& patches, const NamedRoo
           room[i] = static_cast<std::uint32_t>(s);
     }
   });
+  unname_outer_sides(problem, named.spaces.size(), room);
   return room;
 }
 
@@ -314,7 +349,7 @@ Rooms find_rooms(const Problem& problem, const NamedRooms& named, const Monitor&
 
   // Labels: those with names, then the open air, then one for each patch that decides.
   const auto air = static_cast<std::uint32_t>(named_count);
-  const std::vector<std::uint32_t> name = named_room_of(patches, named);
+  const std::vector<std::uint32_t> name = named_room_of(problem, named);
   std::vector<std::uint32_t> label;
   std::vector<bool> is_fixed, is_named(deciding.size() + named_count + 1);
   for (std::uint32_t k = 0; k < deciding.size(); ++k) {

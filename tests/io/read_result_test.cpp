@@ -6,8 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "io/atomic_file.h"
+#include "io/read_run_report.h"
 #include "io/write_result.h"
 #include "solver/model/error.h"
+#include "solver/model/units.h"
 #include "tests/support/temp_folder.h"
 
 namespace clerestory {
@@ -18,7 +21,7 @@ namespace fs = std::filesystem;
 /// A triangle with light on both of its sides, far from the origin, in a room.
 void write_sheet(
     const fs::path& file, const SceneAround& around = {},
-    const std::function<void(PatchSet&)>& change = [](PatchSet&) {}) {
+    const std::function<void(PatchSet&)>& change = [](PatchSet&) {}, const LayeredLight& layers = {}) {
   PatchSet patches;
   patches.origin = {1e6, -2e6, 50};
   patches.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}};
@@ -40,7 +43,32 @@ void write_sheet(
   lightmap.patch_of_point = {0, 0, 0, 1, 1, 1};
   lightmap.E = Field(6, 3);
   for (std::size_t i = 0; i < 6; ++i) lightmap.E.set(i, Spectrum(1.0 + static_cast<double>(i)));
-  write_result(file, patches, lightmap, solution, around, new_report("sheet.obj"));
+  RunReport report = new_report("sheet.obj");
+  report.layers = around.layers;
+  report.repairs.input_faces = 3, report.repairs.worst_angle_deg = 36.87, report.counts.clusters = 5;
+  report.settings = {{"seed", 7LL}, {"max_element", 2.0}};
+  AtomicFile whole(file);
+  write_result(whole, patches, lightmap, solution, around, report, layers);
+  whole.commit();
+}
+
+/// Of two layers, "a, b" and "sky", on the sheet.
+LayeredLight layered_light() {
+  LayeredLight light{Field(6, 6), Field(2, 6), Field(6, 6), Field(2, 6)};
+  for (Field* field : {&light.E, &light.E_elements, &light.B, &light.B_elements})
+    for (std::size_t k = 0; k < field->value.size(); ++k) field->value[k] = 0.5 + static_cast<double>(k);
+  return light;
+}
+SceneAround around_layers() {
+  SceneAround around;
+  SkyTable sky;
+  sky.radiance = Field(SkyTable::kRows * SkyTable::kColumns, 3);
+  sky.radiance.set(7, {0.5, 0.25, 2});
+  around.layers = {{"a, b", {1, 2, 3}, {}, 0.5}, {"sky", {4, 5, 6}, sky, 1}};
+  Field lanes(2, 6);
+  for (std::size_t k = 0; k < lanes.value.size(); ++k) lanes.value[k] = 1.0 / (1.0 + static_cast<double>(k));
+  around.sensors = {{{"desk", {{{1, 2, 3}, {0, 0, 1}}, {{4, 5, 6}, {0, 1, 0}}}}, {7, 8}, lanes}};
+  return around;
 }
 
 TEST(ReadResult, BringsBackWhatWasWritten) {
@@ -93,6 +121,61 @@ TEST(ReadResult, BringsBackWhatIsAroundTheSurfaces) {
   ASSERT_EQ(r.around.luminaires.size(), 2u);
   EXPECT_EQ(r.around.luminaires[0].group, "ceiling");
   EXPECT_EQ(r.around.luminaires[1].luminous_flux, 400);
+}
+
+TEST(ReadResult, BringsBackTheLayers) {
+  const TempFolder folder;
+  const SceneAround around = around_layers();
+  const LayeredLight light = layered_light();
+  write_sheet(
+      folder / "a.vtp", around, [](PatchSet&) {}, light);
+  const WrittenResult r = read_result(fs::path(folder / "a.vtp"));
+  ASSERT_EQ(r.around.layers.size(), 2u);
+  const ShownLayer &first = r.around.layers[0], &sky = r.around.layers[1];
+  EXPECT_EQ(first.name, "a, b");
+  EXPECT_EQ(first.energy.absorbed, 2);
+  EXPECT_EQ(first.factor, 0.5);
+  EXPECT_TRUE(first.sky.empty());
+  EXPECT_EQ(sky.sky.radiance[7], (Spectrum{0.5, 0.25, 2}));
+  EXPECT_EQ(r.of_points.at("irradiance:sky").components, 3);
+  EXPECT_EQ(r.of_points.at("irradiance:sky").value[3], 9.5f) << "lane 3 of the second point's six is 6 + 3";
+  EXPECT_EQ(r.of_cells.at("radiosity:a, b").value[1], 1.5f);
+  const auto E = r.of_points.at("irradiance:a, b").value;
+  EXPECT_FLOAT_EQ(r.of_points.at("illuminance:a, b").value[0], static_cast<float>(photometric({E[0], E[1], E[2]})));
+  ASSERT_EQ(r.around.sensors.size(), 1u);
+  EXPECT_EQ(r.around.sensors[0].layers.value, around.sensors[0].layers.value) << "double, as written";
+}
+
+TEST(ReadResult, WhatIsReadAndWrittenAgainIsTheSameFile) {
+  const TempFolder folder;
+  for (const bool layered : {false, true}) {
+    SceneAround around = layered ? around_layers() : SceneAround();
+    around.daylight_reference = 10'000;
+    around.luminaires = {{{1, 1, 2.5}, "spot", "ceiling", 800}};
+    write_sheet(
+        folder / "a.vtp", around, [](PatchSet&) {}, layered ? layered_light() : LayeredLight());
+    const WrittenResult r = read_result(fs::path(folder / "a.vtp"));
+    AtomicFile again(folder / "b.vtp");
+    write_result(again, r, run_report_of(r.report, r.file));
+    again.commit();
+    EXPECT_TRUE(read_text(folder / "a.vtp") == read_text(folder / "b.vtp")) << layered;
+  }
+}
+
+TEST(ReadResult, RefusesALayerWithoutItsLight) {
+  const TempFolder folder;
+  SceneAround around = around_layers();
+  write_sheet(
+      folder / "a.vtp", around, [](PatchSet&) {}, layered_light());
+  std::string text = read_text(folder / "a.vtp");
+  for (std::size_t at = 0; (at = text.find("irradiance:sky", at)) != text.npos;) text.replace(at, 14, "irradiance:sun");
+  const fs::path file = folder.write("b.vtp", text);
+  try {
+    read_result(file);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("layer 'sky', and no array 'irradiance:sky'"), std::string::npos) << e.what();
+  }
 }
 
 std::string refused(const fs::path& file) {

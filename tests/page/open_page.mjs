@@ -51,6 +51,29 @@ try {
     expect(after !== before, `${id} (${change}) changes nothing`);
     before = after;
   }
+
+  // A slider moves plans, tables and the view; as solved is as it was.
+  if (await browser.evaluate(`document.getElementById('layers') !== null`)) {
+    await browser.waitFor(`document.getElementById('layers').dataset.ready`);
+    const state = async () => {
+      await browser.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
+      const html = await browser.evaluate(`[...document.querySelectorAll('section.reacts table, svg.plan, .verdict')].map((e) => e.outerHTML).join('')`);
+      return { html, picture: await picture(), mean: Number(await browser.evaluate(`document.querySelector('#sensors')?.closest('section').querySelector('tbody td:nth-child(3)').textContent.replace(',', '')`)) };
+    };
+    const solved = await state();
+    const move = (value) => browser.evaluate(`for (const e of document.querySelectorAll('#layers input')) { e.value = ${value}; e.dispatchEvent(new Event('input', { bubbles: true })); }`);
+    await move(50);
+    const half = await state();
+    expect(half.picture !== solved.picture, 'layers at a half look as before');
+    expect(Math.abs(half.mean - solved.mean / 2) <= 0.01 * solved.mean, `at a half the mean is ${half.mean} lx of ${solved.mean}`);
+    expect(half.html !== solved.html && await browser.evaluate(`document.body.classList.contains('relit')`), 'the page does not tell that it is dimmed');
+    await browser.screenshot(path.join(folder, `${path.basename(page, '.html')}_dimmed.png`));
+    await browser.evaluate(`document.getElementById('layers-off').click()`);
+    expect((await state()).mean === 0, 'with all off there is light on sensors');
+    await browser.evaluate(`document.getElementById('layers-solved').click()`);
+    const again = await state();
+    expect(again.html === solved.html && again.picture === solved.picture, 'as solved is not as it was');
+  }
   await browser.screenshot(path.join(folder, `${path.basename(page, '.html')}.png`));
   const pdf = await browser.pdf();
   expect(pdf.subarray(0, 5).toString() === '%PDF-' && pdf.length > 10000, 'it cannot be printed');

@@ -20,8 +20,10 @@ if [ "$script" = open_page.mjs ]; then
 fi
 
 rm -rf "$results" && mkdir -p "$results"
-for scene in office cornell_box; do  # daylight in grey, a lamp in colour
-  "$program" solve "$here/../../data/scenes/$scene.json" -o "$results/$scene.vtp" --accuracy draft --no-error --quiet
+for scene in office cornell_box classroom; do  # daylight in grey, a glowing lamp in colour, luminaires in layers
+  layers=()
+  [ $scene = office ] || layers=(--layers)
+  "$program" solve "$here/../../data/scenes/$scene.json" -o "$results/$scene.vtp" --accuracy draft --no-error --quiet "${layers[@]}"
   "$program" report "$results/$scene.vtp" -o "$results/$scene.html" --quiet
   "$node" "$here/$script" "$results/$scene.html" "$results/$scene.vtp" "${browser[@]}"
 done

@@ -1,11 +1,12 @@
-// A result as `clerestory solve` writes it, read without VTK: XML with zlib streams in base 64.
+// A result as `clerestory solve` writes it, read without VTK: XML in base 64, of zlib streams where it has no layers.
 
 import fs from 'node:fs';
 import zlib from 'node:zlib';
 
 const kTypes = { Float32: Float32Array, Float64: Float64Array, Int32: Int32Array, Int64: BigInt64Array, UInt32: Uint32Array, UInt8: Uint8Array, Int8: Int8Array };
 
-function decode(text) {
+function decode(text, isPacked) {
+  if (!isPacked) return Buffer.from(text, 'base64').subarray(4);  // a count of bytes, then these
   // Head: count of blocks, their size, size of the last, then how long each is as it is stored.
   const words = (base64) => new Uint32Array(new Uint8Array(Buffer.from(base64, 'base64')).buffer);
   const blocks = words(text.slice(0, 16))[0];
@@ -32,7 +33,7 @@ export class Vtp {
     const part = this.xml.slice(begin, this.xml.indexOf(`</${section}>`, begin));
     const found = [...part.matchAll(/<(?:Data)?Array ([^>]*)>\s*([A-Za-z0-9+/=]*)/g)].find((m) => m[1].includes(`Name="${name}"`));
     if (!found) throw new Error(`the result has no ${name} in ${section}`);
-    return { type: /type="(\w+)"/.exec(found[1])[1], bytes: decode(found[2]) };
+    return { type: /type="(\w+)"/.exec(found[1])[1], bytes: decode(found[2], this.xml.includes('compressor=')) };
   }
 
   numbers(section, name) {

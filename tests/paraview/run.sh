@@ -7,7 +7,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 rm -rf "$results" && mkdir -p "$results"
 for scene in furnace cornell_box office; do
   "$program" solve "$here/../../data/scenes/$scene.json" -o "$results/$scene.vtp" --report "$results/$scene.json" \
-    --accuracy draft --quiet
+    --accuracy draft --quiet --layers
 done
 
 bash "$here/pvpython.sh" "$here/open_results.py" "$results"

@@ -35,6 +35,17 @@ for i in range(lines.GetNumberOfPoints()):
     lux = lines.GetPointData().GetArray("illuminance").GetValue(i)
     expect(min(abs(lux - level) for level in levels) <= 1e-3 * lux, "a line of", lux, "lux")
 
+# The sum of the layers is the light; at half of each there is half of it.
+lit = source.PointData["illuminance"].GetRange()
+layers = made["Layers"]
+summed = layers.PointData["illuminance"].GetRange()
+expect(all(abs(a - b) <= 1e-4 * lit[1] for a, b in zip(lit, summed)), "the layers sum to", summed, "and the light is", lit)
+layers.Function = layers.Function.replace("1*", "0.5*")
+layers.UpdatePipeline()
+half = layers.PointData["illuminance"].GetRange()
+expect(all(abs(a / 2 - b) <= 1e-4 * lit[1] for a, b in zip(lit, half)), "at a half there is", half, "of", lit)
+layers.Function = layers.Function.replace("0.5*", "1*")
+
 simple.SaveScreenshot(PICTURE, view)
 png = vtkPNGReader()
 png.SetFileName(PICTURE)

@@ -123,7 +123,25 @@ TEST(ReportPage, TakesNamesForWordsAndNeverForMarkup) {
   EXPECT_EQ(times("<script>alert", page), 0u);
   EXPECT_EQ(times("\xff", page), 0u);
   EXPECT_GE(times("&quot;&gt;&lt;script&gt;alert('&amp;')&lt;/script&gt;?", page), 12u);
-  EXPECT_EQ(times("<script", page), 8u) << "the viewer, and the seven parts of its data";
+  EXPECT_EQ(times("<script", page), 10u) << "the viewer, and the nine parts of its data";
+}
+
+TEST(ReportPage, HasASliderALayerAndWhatItMoves) {
+  WrittenResult r = written_sheets(2, slope);
+  r.around.sensors = {desk("desk", {0, 0, 0.5})};
+  r.around.layers = {{.name = "lamps", .energy = {}}, {.name = "sky", .energy = {}}};
+  r.around.sensors[0].layers = Field(20, 2);
+  for (const char* layer : {"lamps", "sky"}) {
+    r.of_points[of_layer("illuminance", layer)] = r.of_points["illuminance"];
+    for (float& lux : r.of_points[of_layer("illuminance", layer)].value) lux /= 2;
+  }
+  PageFiles files = kFiles;
+  EXPECT_EQ(times("id=\"layers\"", report_page(r, {}, files, {})), 0u) << "without a script nothing moves them";
+  files.viewer = "start();";
+  const std::string page = report_page(r, {}, files, {});
+  for (const char* words : {"id=\"layers\"", "name=\"lamps\" min=\"0\"", "name=\"sky\" min=\"0\"", "data-plan=\"1\"",
+                            "id=\"plan-1-light\"", "\"name\":\"desk\",\"columns\":5,\"rows\":4,\"set\":0"})
+    EXPECT_EQ(times(words, page), 1u) << words;
 }
 
 TEST(ReportPage, AsksForNothingThatIsElsewhere) {

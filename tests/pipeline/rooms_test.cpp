@@ -131,6 +131,36 @@ TEST(Rooms, HaveTheNamesThatTheSceneGivesThem) {
   EXPECT_NEAR(studio.area, store.area, 6);
 }
 
+TEST(Rooms, NamedBySheetsEndAtTheirInnerSides) {
+  // A box of sheets, 4 x 5 x 2.6 m, whose front is open: the sky lights both sides of each.
+  const TempFolder folder;
+  std::ofstream(folder / "box.obj") << R"(
+v 0 0 0
+v 4 0 0
+v 4 5 0
+v 0 5 0
+v 0 0 2.6
+v 4 0 2.6
+v 4 5 2.6
+v 0 5 2.6
+o floor
+f 1 2 3 4
+o roof
+f 5 8 7 6
+o back
+f 3 7 8 4
+o west
+f 1 4 8 5
+o east
+f 2 6 7 3
+)";
+  std::ofstream(folder / "box.json") << R"({ "geometry": [{ "file": "box.obj" }], "sky": { "model": "uniform" },
+    "rooms": [{ "name": "R", "surfaces": ["*"] }] })";
+  const Solved solved = solve_draft(folder / "box.json");
+  ASSERT_TRUE(solved.error);
+  EXPECT_NEAR(part_named(*solved.error, "R").area, 2 * 4 * 5 + 4 * 2.6 + 2 * 5 * 2.6, 0.1);
+}
+
 TEST(Rooms, HaveTheNamesOfVolumes) {
   const TwoRooms two;
   Scene scene = read_scene(two.scene());

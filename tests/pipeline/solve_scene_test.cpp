@@ -157,6 +157,66 @@ TEST(SolveScene, StoppedBeforeThereArePatchesIsEmpty) {
   EXPECT_EQ(solved.solution.stop, StopReason::interrupted);
 }
 
+/// Stops once there is something to lose.
+class Leaving : public Observer {
+ public:
+  void has_result() override { has_it = true; }
+  bool should_stop() const override { return has_it; }
+  bool has_it = false;
+};
+
+Scene box_of_two_groups() {
+  Scene scene = glowing_box();
+  scene.materials[0].group = "walls";
+  scene.lights.luminaires.push_back({"lamp", {2, 1.5, 1.25}, "desk", PointLuminaire{Spectrum(118.0)}});
+  return scene;
+}
+
+TEST(SolveScene, InLayersGivesEachTheClosedFormOfItsOwnLight) {
+  Settings settings = draft();
+  settings.layers = true;
+  settings.error_samples = 0;
+  const Solved solved = solve_scene(box_of_two_groups(), settings);
+  ASSERT_EQ(solved.layers.layers.size(), 2u);
+  EXPECT_EQ(solved.layers.layers[0].name, "desk");
+  EXPECT_EQ(solved.layers.layers[1].name, "walls");
+  const Field &E = solved.layers.light.E_elements, &B = solved.layers.light.B_elements;
+  double flux = 0, area = 0;
+  for (std::size_t i = 0; i < E.size(); ++i) {
+    if (solved.patches.M.at(i, 0) == 0) continue;  // the box is dark outside
+    EXPECT_NEAR(E.at(i, 1), 20, 0.2) << "M / (1 - rho); layers share the 1 % that totals are put right by";
+    EXPECT_NEAR(B.at(i, 1), 10 + 0.5 * E.at(i, 1), 1e-9);
+    EXPECT_NEAR(B.at(i, 0), 0.5 * E.at(i, 0), 1e-9);
+    flux += E.at(i, 0) * solved.patches.area[i], area += solved.patches.area[i];
+  }
+  EXPECT_NEAR(area, 59, 1e-6);
+  EXPECT_NEAR(flux, 118 / (1 - 0.5), 0.01 * 236) << "1 % of a draft's energy";
+  EXPECT_DOUBLE_EQ(solved.layers.energy[0].emitted, 118);
+  EXPECT_NEAR(solved.layers.sensor_E.at(0, 0) + solved.layers.sensor_E.at(0, 1), solved.sensor_E.at(0, 0), 1e-6);
+}
+
+TEST(SolveScene, StoppedBeforeItHasLayersShowsTheLightTogether) {
+  Settings settings = draft();
+  settings.layers = true;
+  Leaving observer;
+  const Solved solved = solve_scene(box_of_two_groups(), settings, observer);
+  ASSERT_FALSE(solved.empty());
+  EXPECT_EQ(solved.solution.stop, StopReason::interrupted);
+  EXPECT_TRUE(solved.layers.light.empty());
+  EXPECT_GT(solved.lightmap.E[0][0], 0);
+}
+
+TEST(SolveScene, RefusesLayersThatCannotBe) {
+  Settings settings = draft();
+  settings.layers = true;
+  settings.solve.method = Method::progressive;
+  EXPECT_THROW(solve_scene(box_of_two_groups(), settings), InputError);
+  settings.solve.method = Method::hierarchical;
+  Scene scene = box_of_two_groups();
+  scene.materials[0].group = "sky";
+  EXPECT_THROW(solve_scene(scene, settings), InputError);
+}
+
 class Listener : public Observer {
  public:
   void warn(const std::string& line) override { warnings.push_back(line); }

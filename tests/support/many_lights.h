@@ -3,6 +3,7 @@
 // panel, a diffuser, a mirror.
 
 #include "solver/illumination/place_lights.h"
+#include "solver/illumination/problem.h"
 #include "solver/visibility/ray_scene.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"

@@ -88,6 +88,18 @@ TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
   EXPECT_NEAR(sum, area, 1e-9 * area);
 }
 
+TEST(ShadowEdges, OfOneOfSeveralTimesAreThoseOfThatTime) {
+  constexpr std::size_t kTimes = 10;
+  SceneMaker maker = floor_and_plate();
+  LightSpec& lights = maker.scene().lights;
+  lights.suns.push_back({kToSun, Spectrum(1000.0 / kTimes), 3});
+  lights.times = kTimes;
+  // Floors that are as bright at all other times: the sun has a tenth of the mean light.
+  EXPECT_EQ(Floor(maker).cut(1000).cut, Floor(in_the_sun()).cut(1000).cut);
+  lights.suns[0].time = {};
+  EXPECT_EQ(Floor(maker).cut(1000).cut, 0u);  // a weak sun that shines always
+}
+
 TEST(ShadowEdges, LeaveASoundMeshOfTrianglesThatAreNotTooThin) {
   Floor floor(in_the_sun());
   const std::size_t before = floor.mesh.leaf_count();

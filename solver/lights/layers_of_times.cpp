@@ -1,0 +1,35 @@
+#include "solver/lights/layers_of_times.h"
+
+#include <algorithm>
+
+#include "solver/model/light_of_times.h"
+
+namespace clerestory {
+
+Lights lights_at(const Lights& mean, std::size_t t) {
+  Lights lights = mean;
+  lights.sky = sky_at(mean.sky, t);
+  lights.suns = suns_at(mean.suns, mean.times, t);
+  lights.times = 1;
+  return lights;
+}
+
+std::vector<Layer> layers_of_times(const Lights& mean, const PatchSet& patches) {
+  const std::size_t luminaires = mean.luminaires.size();
+  const double share = 1 / static_cast<double>(mean.times);
+  std::vector<Layer> layers(mean.times);
+  for (std::size_t t = 0; t < mean.times; ++t) {
+    Layer& layer = layers[t];
+    layer.lights.assign(luminaires + mean.suns.size(), Spectrum(0.0));
+    std::fill_n(layer.lights.begin(), luminaires, Spectrum(share));
+    for (std::size_t k = 0; k < mean.suns.size(); ++k) {
+      const std::optional<std::size_t>& own = mean.suns[k].time;
+      if (!own || *own == t) layer.lights[luminaires + k] = Spectrum(own ? 1 : share);
+    }
+    layer.materials.assign(patches.materials.size(), Spectrum(share));
+    if (mean.sky) layer.sky = std::make_shared<const SkyRadiance>(lights_at(mean, t), share);
+  }
+  return layers;
+}
+
+}  // namespace clerestory

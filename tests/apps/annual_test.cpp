@@ -1,0 +1,129 @@
+// Daylight of a year from the outside: what is known of open ground, blinds, and what is refused.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "io/formats/weather_year.h"
+#include "io/read_result.h"
+#include "tests/support/even_weather.h"
+#include "tests/support/run_program.h"
+
+namespace clerestory {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class Annual : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder.write("ground.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
+    folder.write("ground.json", R"({ "geometry": [{ "file": "ground.obj" }],
+        "sensors": [{ "name": "up", "origin": [0, 0, 0.5], "u": [0.5, 0, 0], "v": [0, 0.5, 0], "spacing": 0.5,
+                      "normal": [0, 0, 1] }] })");
+    folder.write("year.epw", even_weather());
+  }
+  ProgramRun annual(const std::string& scene, const Words& more = {}) const {
+    Words words = {"annual", folder / scene, "--accuracy", "draft", "-o", folder / "year.vtp"};
+    bool has_weather = false;
+    for (const std::string& word : more) has_weather = has_weather || word == "--weather";
+    if (!has_weather) words.insert(words.end(), {"--weather", folder / "year.epw"});
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  }
+  nlohmann::json rooms_and_grids() const { return nlohmann::json::parse(read_text(folder / "year.json")); }
+
+  TempFolder folder;
+};
+
+TEST_F(Annual, OpenGroundHasWhatTheWeatherSays) {
+  const ProgramRun run = annual("ground.json", {"--threshold", "300,20000"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Weather weather = read_epw(folder / "year.epw");
+  double sum = 0;
+  int bright = 0;
+  for (const DaylightHour& hour : daylight_year(weather, weather.place, 0, 0.2).hours) {
+    const double lux = hour.diffuse_horizontal_lux + hour.direct_normal_lux() * hour.sun.z;
+    sum += lux, bright += lux >= 20'000;
+  }
+  const nlohmann::json grid = rooms_and_grids()["grids"][0];
+  // Nothing is in the way, so parts of the sky are seen whole: what is left is rounding of floats.
+  EXPECT_NEAR(grid["mean_illuminance"].get<double>(), sum / 3650, 1e-3 * sum / 3650);
+  EXPECT_EQ(grid["sDA"], 0) << "light in 1,460 of 3,650 hours is 40 %";
+  EXPECT_EQ(grid["ASE"], 100);
+  const WrittenResult result = read_result(folder / "year.vtp");
+  for (const float DA : result.of_points.at("DA_300").value) EXPECT_FLOAT_EQ(DA, 40);
+  for (const float hours : result.of_points.at("hours_20000").value) EXPECT_FLOAT_EQ(hours, static_cast<float>(bright));
+  for (const float hours : result.of_points.at("ASE_hours").value) EXPECT_FLOAT_EQ(hours, 1460);
+}
+
+TEST_F(Annual, BlindsAreClosedInAsFewGroupsAsKeepTheSunOut) {
+  // A window to the south, sun at noon all year, in two panes; the west one has no sun behind a screen in front of it.
+  folder.write("room.obj",
+               "usemtl wall\n"
+               "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 0 0 2.5\nv 3 0 2.5\nv 3 3 2.5\nv 0 3 2.5\n"
+               "v 0.5 0 1\nv 1.5 0 1\nv 2.5 0 1\nv 0.5 0 2\nv 1.5 0 2\nv 2.5 0 2\n"
+               "v -9 -0.5 0\nv 1.5 -0.5 0\nv 1.5 -0.5 9\nv -9 -0.5 9\nv 1.5 0 0\nv 1.5 0 9\n"
+               "f 1 2 3 4\nf 8 7 6 5\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
+               "f 1 2 11 10 9\nf 2 6 14 11\nf 6 5 12 13 14\nf 5 1 9 12\n"
+               "usemtl screen\nf 15 16 17 18\nf 16 19 20 17\n"
+               "usemtl west\nf 9 10 13 12\nusemtl east\nf 10 11 14 13\n");
+  const auto scene = [](const std::string& blinds) {
+    return R"({ "geometry": [{ "file": "room.obj" }], "materials": {
+        "west": { "type": "glass", "transmittance": 0.7)" +
+           (blinds.empty() ? "" : blinds + R"("west" } )") + R"( },
+        "east": { "type": "glass", "transmittance": 0.7)" +
+           (blinds.empty() ? "" : blinds + R"("east" } )") + R"( },
+        "*": { "reflectance": 0.5 } },
+        "sensors": [{ "name": "desk", "origin": [0.25, 0.25, 0.8], "u": [2.5, 0, 0], "v": [0, 2.5, 0], "spacing": 0.25,
+                      "normal": [0, 0, 1] }] })";
+  };
+  folder.write("open.json", scene(""));
+  folder.write("blinds.json", scene(R"(, "blinds": { "transmittance": 0.02, "group": )"));
+  ASSERT_EQ(annual("open.json").exit_code, 0);
+  const nlohmann::json open = rooms_and_grids()["grids"][0];
+  ASSERT_EQ(annual("blinds.json").exit_code, 0);
+  const nlohmann::json with_blinds = rooms_and_grids()["grids"][0];
+  EXPECT_EQ(open["hours_blinds_closed"], 0);
+  EXPECT_GT(with_blinds["hours_blinds_closed"], 1000);
+  EXPECT_EQ(with_blinds["hours_not_complying"], 0) << "0.02 of 70,000 lx is no 1,000 lx";
+  EXPECT_EQ(with_blinds["ASE"], open["ASE"]) << "with blinds open";
+  // The west pane stays open: less than half of the light is left, and more than closing both would leave.
+  const double left = with_blinds["mean_illuminance"].get<double>() / open["mean_illuminance"].get<double>();
+  EXPECT_LT(left, 0.6);
+  EXPECT_GT(left, 0.06);
+}
+
+TEST_F(Annual, RefusesWhatItCannotUse) {
+  const auto refused = [&](const std::string& scene, const Words& more) {
+    const ProgramRun run = annual(scene, more);
+    EXPECT_EQ(run.exit_code, 3) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "year.vtp"));
+    return run.err;
+  };
+  EXPECT_NE(refused("ground.json", {"--schedule", "9-9"}).find("--schedule"), std::string::npos);
+  EXPECT_NE(refused("ground.json", {"--weather", folder / "none.epw"}).find("none.epw"), std::string::npos);
+  EXPECT_NE(refused("ground.obj", {"--hours", folder / "hours"}).find("--hours: there are no sensors"),
+            std::string::npos);
+  folder.write("pane.json", R"({ "geometry": [{ "file": "ground.obj" }], "materials": {
+      "*": { "type": "glass", "transmittance": 0.3, "blinds": { "transmittance": 0.5, "group": "a" } } } })");
+  EXPECT_NE(refused("pane.json", {}).find("is more than the pane passes without blinds, 0.3"), std::string::npos);
+  for (const Words& wrong : {Words{"--sky-parts", "146"}, Words{"--threshold", "0"}, Words{"--threshold", "300,-5"}})
+    EXPECT_EQ(annual("ground.json", wrong).exit_code, 2) << wrong[0] << ' ' << wrong[1];
+}
+
+TEST_F(Annual, ResultIsDrawnAndReported) {
+  ASSERT_EQ(annual("ground.json").exit_code, 0);
+  const ProgramRun picture = run_program({"render", folder / "year.vtp", "-o", folder / "DA.png", "--show", "DA_300",
+                                          "--size", "64x48", "--samples", "1"});
+  EXPECT_EQ(picture.exit_code, 0) << picture.err;
+  const ProgramRun page = run_program({"report", folder / "year.vtp", "-o", folder / "year.html"});
+  EXPECT_EQ(page.exit_code, 0) << page.err;
+}
+
+}  // namespace
+}  // namespace clerestory

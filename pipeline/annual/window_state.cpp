@@ -25,7 +25,8 @@ Field radiosity(const KeptTransport& kept, const Lights& lights) {
 WindowState::WindowState(const Prepared& scene, KeptTransport kept, const StateOptions& how, const Monitor& monitor)
     : problem_{elements_, scene.rays, scene.lights} {
   B_ = radiosity(kept, scene.lights);
-  reflected_ = reflect_daylight(kept, scene.rays, how.coarse, how.nodes.direction, how.solve.seed, monitor);
+  reflected_ =
+      reflect_daylight(kept, scene.patches, scene.rays, how.coarse, how.nodes.direction, how.solve.seed, monitor);
   elements_ = std::move(kept.elements);
   kept = {};
   light_ = std::make_unique<Illumination>(gather_illumination_by_slits(problem_, B_, {}, how.solve.seed, monitor));

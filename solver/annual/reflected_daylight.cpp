@@ -38,15 +38,21 @@ Field straight_from_sky(const KeptTransport& kept, const SkyParts& parts, std::s
   return E;
 }
 
-/// Straight from the sun at each node, and over mirrors and panes, N x (nodes x channels).
-Field straight_from_suns(const KeptTransport& kept, const RayScene& rays, std::span<const Vec3> nodes,
-                         std::uint64_t seed, const Monitor& monitor, std::vector<std::vector<MirrorWay>>& ways) {
+/// From the sun at each node, N x (nodes x channels).
+struct FromSuns {
+  Field all;       ///< straight, and over mirrors and panes
+  Field straight;  ///< its part
+};
+/// patches  with mirrors and panes, which elements leave out.
+FromSuns from_suns(const KeptTransport& kept, const PatchSet& patches, const RayScene& rays,
+                   std::span<const Vec3> nodes, std::uint64_t seed, const Monitor& monitor,
+                   std::vector<std::vector<MirrorWay>>& ways) {
   Lights suns;
   std::vector<std::size_t> node_of_sun;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     Lights one;
     one.suns.push_back({Sun{nodes[k], Spectrum(1.0)}});
-    add_images(one, kept.elements, rays);
+    add_images(one, patches, rays);
     std::vector<MirrorWay>& own = ways.emplace_back();
     for (PlacedSun& sun : one.suns) {
       if (sun.is_image()) own.push_back(sun.way);
@@ -54,16 +60,21 @@ Field straight_from_suns(const KeptTransport& kept, const RayScene& rays, std::s
       node_of_sun.push_back(k);
     }
   }
-  std::vector<Layer> layers(nodes.size());
-  for (Layer& layer : layers) layer.lights.resize(suns.suns.size());
-  for (std::size_t k = 0; k < node_of_sun.size(); ++k) layers[node_of_sun[k]].lights[k] = Spectrum(1.0);
+  std::vector<Layer> all(nodes.size());
+  for (Layer& layer : all) layer.lights.resize(suns.suns.size());
+  std::vector<Layer> straight = all;
+  for (std::size_t k = 0; k < node_of_sun.size(); ++k) {
+    all[node_of_sun[k]].lights[k] = Spectrum(1.0);
+    if (!suns.suns[k].is_image()) straight[node_of_sun[k]].lights[k] = Spectrum(1.0);
+  }
   const Problem problem{kept.elements, rays, suns};
   DirectRows rows;
   direct_light(Illumination(problem), {.shadow_rays = 8, .edge_rays = 16, .sky_rays = 0, .seed = seed}, monitor, &rows);
-  return direct_layers(kept.elements, rows, layers).delta_light;
+  return {direct_layers(kept.elements, rows, all).delta_light,
+          direct_layers(kept.elements, rows, straight).delta_light};
 }
 
-/// Of nodes first, first + 1, ..., whose direct irradiance is E and radiosity B.
+/// Of nodes first, first + 1, ..., whose irradiance straight from the sun is E and whose radiosity is B.
 void add_flux_of_suns(const PatchSet& elements, const Field& E, const Field& B, std::size_t first, std::size_t nodes,
                       ReflectedDaylight& out) {
   const std::size_t count = static_cast<std::size_t>(E.channels / elements.channels);
@@ -80,8 +91,9 @@ void add_flux_of_suns(const PatchSet& elements, const Field& E, const Field& B, 
 
 }  // namespace
 
-ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& rays, const SkyParts& parts,
-                                   std::span<const Vec3> nodes, std::uint64_t seed, const Monitor& monitor) {
+ReflectedDaylight reflect_daylight(const KeptTransport& kept, const PatchSet& patches, const RayScene& rays,
+                                   const SkyParts& parts, std::span<const Vec3> nodes, std::uint64_t seed,
+                                   const Monitor& monitor) {
   CLERESTORY_ASSERT(kept.complete, ==, true);
   const PatchSet& elements = kept.elements;
   const auto channels = static_cast<std::size_t>(elements.channels);
@@ -99,11 +111,12 @@ ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& ra
       return out;
     }
     count = std::min(at_once, (first < sky ? sky : out.lanes) - first);
-    const Field E =
-        first < sky ? straight_from_sky(kept, parts, first, count)
-                    : straight_from_suns(kept, rays, nodes.subspan(first - sky, count), seed, monitor, out.sun_ways);
+    FromSuns suns;
+    if (first >= sky)
+      suns = from_suns(kept, patches, rays, nodes.subspan(first - sky, count), seed, monitor, out.sun_ways);
+    const Field E = first < sky ? straight_from_sky(kept, parts, first, count) : std::move(suns.all);
     const Balanced s = balance(elements, kept.tree, kept.transport, Field(n, E.channels), E, {}, kResidual, monitor);
-    if (first >= sky) add_flux_of_suns(elements, E, s.B, first - sky, nodes.size(), out);
+    if (first >= sky) add_flux_of_suns(elements, suns.straight, s.B, first - sky, nodes.size(), out);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t k = 0; k < count; ++k)
         for (std::size_t c = 0; c < channels; ++c)

@@ -34,10 +34,12 @@ struct ReflectedDaylight {
 
 /// Balances the transport for all of them, a few lanes at a time: 4 bytes an element, channel and lane.
 ///
-/// kept   of a solve under a sky, complete.
-/// nodes  directions of the sun.
+/// kept     of a solve under a sky, complete.
+/// patches  that it was solved for, with mirrors and panes: over them the sun comes, too.
+/// nodes    directions of the sun.
 /// Threads: same bits for any thread count. Cost: 8 to 24 rays an element and node; one balance for eight lanes.
-ReflectedDaylight reflect_daylight(const KeptTransport& kept, const RayScene& rays, const SkyParts& parts,
-                                   std::span<const Vec3> nodes, std::uint64_t seed, const Monitor& monitor = {});
+ReflectedDaylight reflect_daylight(const KeptTransport& kept, const PatchSet& patches, const RayScene& rays,
+                                   const SkyParts& parts, std::span<const Vec3> nodes, std::uint64_t seed,
+                                   const Monitor& monitor = {});
 
 }  // namespace clerestory

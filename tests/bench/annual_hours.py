@@ -15,7 +15,7 @@ rms_no_sun   the same over those without any direct sun, relative to their own m
 worst_hour   the largest rms of one hour, relative to that hour's mean, of the hours with half the median mean at least
 DA           change of the share of hours and sensors with 300 lx or more [points]; DA_moved: share of those that are on the
              other side of it in either direction, of which the paths' noise is a part
-said         illuminance_error.total of the year: the upper end of how wrong one is that has 100 lx at least, relative to its
+said         illuminance_error.grids.total of the year: the upper end of how wrong one is that has 100 lx at least, relative to its
              own value; true: the rms of that, noise taken off
 
 --scenes plane: all hours with light on open ground against sky + sun of the weather file, nothing of which is the
@@ -212,7 +212,7 @@ class Year:
         (self.n, self.H), self.total = read_npy(os.path.join(hours, "sensors", "total.npy"))
         _, self.direct = read_npy(os.path.join(hours, "sensors", "direct.npy"))
         with open(os.path.join(folder, "year.json")) as file:
-            self.said = json.load(file)["illuminance_error"]["total"]
+            self.said = json.load(file)["illuminance_error"]["grids"]["total"]
         with open(os.path.join(folder, "report.json")) as file:
             self.report = json.load(file)
 

@@ -135,11 +135,11 @@ TEST_P(ReflectDaylight, PartsOfAnEvenSkySumToItsJointBalance) {
   std::vector<std::vector<float>> bits;
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
-    bits.push_back(reflect_daylight(kept, room.rays, parts, nodes, 1).B);
+    bits.push_back(reflect_daylight(kept, patches, room.rays, parts, nodes, 1).B);
   }
   set_thread_count(0);
   EXPECT_EQ(bits[0], bits[1]);
-  const ReflectedDaylight reflected = reflect_daylight(kept, room.rays, parts, nodes, 1);
+  const ReflectedDaylight reflected = reflect_daylight(kept, patches, room.rays, parts, nodes, 1);
   ASSERT_EQ(reflected.lanes, parts.count() + 1 + nodes.size());
   ASSERT_EQ(reflected.channels, GetParam());
   // Radiance 1 from everywhere: every part of the sky, and the ground, which sends back all that it gets.
@@ -154,6 +154,8 @@ TEST_P(ReflectDaylight, PartsOfAnEvenSkySumToItsJointBalance) {
       for (std::size_t k = 0; k < 2; ++k) by_sun[k] += area * double{lanes[parts.count() + 1 + k]};
     }
   EXPECT_LT(off, 2e-4 * level);  // each lane's balance stops at 1e-4
+  ASSERT_EQ(reflected.sun_ways.size(), 2u);
+  EXPECT_FALSE(reflected.sun_ways[0].empty()) << "the pane turns some of its light";
   EXPECT_GT(by_sun[0], 0) << "the sun shines through the windows";
   EXPECT_EQ(by_sun[1], 0) << "from behind the room it does not";
 }

@@ -180,6 +180,41 @@ void write_part(const Arguments& arguments, const Scene& scene, const YearSettin
   write_result(outputs.open(arguments.files.output), result, report);
 }
 
+/// The scene's, or the model's where the scene says none.
+double north_of(const Scene& scene, Console& console) {
+  if (scene.north_deg != 0 || scene.place || !scene.model_north_deg) return scene.north_deg;
+  console.warn(scene.file + ": north is " + rounded(*scene.model_north_deg) +
+               " degrees clockwise from +y, as the model says; write \"location\": { \"north\": ... } to have another");
+  return *scene.model_north_deg;
+}
+
+/// Where the error of the hours decides what a room is worth, or leaves it open.
+void warn_of_year(const YearSolved& solved, const AnnualReport& annual, Console& console) {
+  constexpr double kMuch = 0.2;
+  const auto crosses = [](const ShareWithin& share, double limit) {
+    return (share.low >= limit) != (share.high >= limit);
+  };
+  for (const auto* areas : {&annual.rooms, &annual.grids})
+    for (const AreaOfYear& area : *areas) {
+      std::string edges;
+      for (const double limit : {40.0, 55.0, 75.0})
+        if (crosses(area.year.sDA, limit)) edges += (edges.empty() ? "sDA of " : " and ") + rounded(limit) + " %";
+      if (crosses(area.year.ASE_more_than, kLeedAse))
+        edges += std::string(edges.empty() ? "" : ", ") + "ASE of " + rounded(kLeedAse) + " %";
+      if (!edges.empty())
+        console.warn(area.name + ": whether it has an " + edges + " cannot be told at this accuracy; see its interval");
+    }
+  for (const auto& [where, e] :
+       {std::pair("sensors", &solved.error_sensors), std::pair("vertices", &solved.error_points)})
+    if (*e && !(*e)->bound && (*e)->rms_relative > kMuch)
+      console.warn("illuminances of single hours at " + std::string(where) + " are off by " +
+                   percent((*e)->rms_relative) + " of their mean; use a finer --accuracy");
+  if (annual.rooms.empty() && annual.grids.empty())
+    console.warn(
+        "there are no sensors, and no room with a floor was found: sDA, ASE and EN 17037 are of none; the figures "
+        "are on the vertices only");
+}
+
 void warn_of_lamps(const Scene& scene, Console& console) {
   const bool glows = std::ranges::any_of(scene.materials, [](const Material& m) { return m.emits(); });
   if (!scene.lights.luminaires.empty() || glows)
@@ -241,7 +276,7 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
   const Weather weather = read_epw(arguments.weather);
   console.has_read(scene.files);
   const DaylightYear year =
-      daylight_year(weather, scene.place.value_or(weather.place), scene.north_deg, scene.ground_reflectance);
+      daylight_year(weather, scene.place.value_or(weather.place), north_of(scene, console), scene.ground_reflectance);
   for (const std::string& line : year.warnings) console.warn(line);
   warn_of_lamps(scene, console);
   YearSettings settings = year_settings(arguments, scene, schedule);
@@ -264,6 +299,7 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
   report.settings = as_figures(arguments, settings, solved);
   if (solved.error_sensors) report.error_sensors = figures_of(*solved.error_sensors);
   if (solved.error_points) report.error = figures_of(*solved.error_points);
+  if (!arguments.part) warn_of_year(solved, annual, console);
   report.warnings = console.warnings();
   Outputs outputs;
   if (arguments.part)

@@ -66,6 +66,23 @@ YearRules rules_of(std::span<const DaylightHour> hours, const YearSettings& sett
   return year_rules(number, diffuse, settings.is_occupied, settings.threshold, settings.more_thresholds);
 }
 
+/// Of all hours of the year, whatever counts, so that what is asked for beside the figures does not change them; then
+/// of_sun is by the hours that count.
+SunNodes nodes_of(const DaylightYear& year, std::span<const DaylightHour> hours, double step_deg) {
+  std::vector<Vec3> suns;
+  std::vector<int> hour_of_sun;
+  for (const DaylightHour& h : year.hours)
+    if (h.sun_up) suns.push_back(h.sun), hour_of_sun.push_back(h.hour);
+  SunNodes nodes = place_sun_nodes(suns, year.place.latitude_deg, year.north_deg, step_deg);
+  std::vector<AmongNodes> of_hour(hours.size());
+  for (std::size_t h = 0; h < hours.size(); ++h)
+    if (hours[h].sun_up)
+      of_hour[h] = nodes.of_sun[static_cast<std::size_t>(std::ranges::lower_bound(hour_of_sun, hours[h].hour) -
+                                                         hour_of_sun.begin())];
+  nodes.of_sun = std::move(of_hour);
+  return nodes;
+}
+
 /// Places of the points that light is shown on, and of sensors.
 std::vector<PlacesOfPoint> places_of(const VertexLightmap& map, const RayScene& rays) {
   const PointOf place = sample_points(map, rays);
@@ -204,14 +221,7 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
 
   // Hours -> light of sky parts and sun by the hour, and the one sky that elements are fitted to.
   const SkyParts fine(out.sky_parts), coarse(kCoarseParts);
-  std::vector<Vec3> suns;
-  std::vector<std::size_t> hour_of_sun;
-  for (std::size_t h = 0; h < hours.size(); ++h)
-    if (hours[h].sun_up) suns.push_back(hours[h].sun), hour_of_sun.push_back(h);
-  SunNodes nodes = place_sun_nodes(suns, year.place.latitude_deg, year.north_deg, effort_of_year.node_step_deg);
-  std::vector<AmongNodes> of_hour(hours.size());
-  for (std::size_t s = 0; s < suns.size(); ++s) of_hour[hour_of_sun[s]] = nodes.of_sun[s];
-  nodes.of_sun = std::move(of_hour);
+  const SunNodes nodes = nodes_of(year, hours, effort_of_year.node_step_deg);
   out.sun_nodes = nodes.direction.size();
   const YearLight light = light_of_year(hours, fine, coarse, nodes);
   const std::vector<float>& counts = out.rules.occupied;

@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "meshing/make_lightmap.h"
+#include "solver/evaluate/blinds.h"
 #include "solver/illumination/place_lights.h"
 #include "solver/methods/hierarchical.h"
+#include "solver/model/error.h"
 #include "solver/model/units.h"
 #include "solver/paths/find_slit_gains.h"
 #include "solver/run/accuracy.h"
@@ -34,10 +36,11 @@ WindowState::WindowState(const Prepared& scene, KeptTransport kept, const StateO
       year_scene(*light_, how.fine, reflected_, how.year, how.hours, how.plan_reach, how.sun_rays, how.solve.seed));
 }
 
-WindowState::WindowState(std::unique_ptr<Prepared> scene, KeptTransport kept, const StateOptions& how,
-                         const Monitor& monitor)
+WindowState::WindowState(std::unique_ptr<Prepared> scene, double share_taken, KeptTransport kept,
+                         const StateOptions& how, const Monitor& monitor)
     : WindowState(*scene, std::move(kept), how, monitor) {
   own_ = std::move(scene);
+  share_taken_ = static_cast<float>(share_taken);
 }
 
 void WindowState::year_at(std::span<const PlacesOfPoint> points, const GatherPattern& pattern, std::span<float> total,
@@ -67,6 +70,9 @@ std::vector<std::string> blind_groups(const std::vector<Material>& materials) {
   std::vector<std::string> groups;
   for (const Material& m : materials)
     if (m.blinds && std::ranges::find(groups, m.blinds->group) == groups.end()) groups.push_back(m.blinds->group);
+  if (groups.size() > kMostWindowGroups)
+    throw InputError("materials: blinds are in " + std::to_string(groups.size()) + " groups, and no more than " +
+                     std::to_string(kMostWindowGroups) + " can be operated; join windows that close together.");
   return groups;
 }
 
@@ -74,8 +80,14 @@ void add_closed_states(const Scene& scene, const PreparedToSolve& open, const St
                        std::vector<std::unique_ptr<WindowState>>& states) {
   for (const std::string& group : blind_groups(scene.materials)) {
     PatchSet patches = open.scene.patches;
-    for (Material& m : patches.materials)
-      if (m.blinds && m.blinds->group == group) m.transmittance = m.blinds->transmittance;
+    double taken = 1;
+    for (Material& m : patches.materials) {
+      if (!m.blinds || m.blinds->group != group) continue;
+      if (const double open_share = luminous_mean(m.transmittance); open_share > 0)
+        taken = std::min(taken, 1 - luminous_mean(m.blinds->transmittance) / open_share);
+      m.transmittance = m.blinds->transmittance;
+    }
+    if (!(taken > 0)) taken = 1;  // blinds that take nothing: closing them does not help
     RayScene rays(patches);
     auto closed = std::make_unique<Prepared>(Prepared{std::move(patches), open.scene.repairs, std::move(rays), {}, {}});
     closed->lights = place_lights(scene.lights, closed->patches, closed->rays);
@@ -89,7 +101,7 @@ void add_closed_states(const Scene& scene, const PreparedToSolve& open, const St
     options.keep = &kept;
     ElementMesh mesh(closed->patches, make_lightmap(closed->patches));
     hierarchical(closed->problem(), mesh, options, monitor);
-    states.push_back(std::make_unique<WindowState>(std::move(closed), std::move(kept), how, monitor));
+    states.push_back(std::make_unique<WindowState>(std::move(closed), taken, std::move(kept), how, monitor));
   }
 }
 

@@ -29,16 +29,18 @@ class WindowState {
  public:
   /// scene  whose rays and lights, under the year's mean sky, the transport was found with; outlives this.
   WindowState(const Prepared& scene, KeptTransport kept, const StateOptions& how, const Monitor& monitor);
-  /// The same for a scene that it owns.
-  WindowState(std::unique_ptr<Prepared> scene, KeptTransport kept, const StateOptions& how, const Monitor& monitor);
+  /// The same for a scene that it owns, of which closed panes lack that share of their light.
+  WindowState(std::unique_ptr<Prepared> scene, double share_taken, KeptTransport kept, const StateOptions& how,
+              const Monitor& monitor);
   WindowState(const WindowState&) = delete;
   WindowState& operator=(const WindowState&) = delete;
 
   const YearLight& year() const { return scene_->year; }
+  /// Share of the light of its closed panes that they lack; of those that lack least. 1 where none is closed.
+  float share_taken() const { return share_taken_; }
   const RayScene& rays() const { return problem_.rays; }
   /// With the elements of the transport.
   const Problem& problem() const { return problem_; }
-  const YearScene& scene() const { return *scene_; }
 
   /// Illuminance by the hour at points, see clerestory::year_at(). Thread safe.
   void year_at(std::span<const PlacesOfPoint> points, const GatherPattern& pattern, std::span<float> total,
@@ -48,6 +50,7 @@ class WindowState {
 
  private:
   std::unique_ptr<Prepared> own_;
+  float share_taken_ = 1;
   PatchSet elements_;
   Problem problem_;
   Field B_;
@@ -57,6 +60,8 @@ class WindowState {
 };
 
 /// Groups of panes with blinds, by the order in which the scene's materials name them.
+///
+/// throws  InputError when there are more than blinds can be operated in.
 std::vector<std::string> blind_groups(const std::vector<Material>& materials);
 
 /// For each group of blinds a state in which it alone is closed, in that order.

@@ -16,6 +16,8 @@ namespace {
 
 const double kFacesUp = std::cos(25 * std::numbers::pi / 180);
 
+/// Blinds scatter: what they let through closed is no beam, so closing a group takes all of its sun. That is what its
+/// closed state lacks, over the share that it lacks.
 void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::span<const PlacesOfPoint> points,
                 const YearRules& rules, YearArea& area) {
   const std::size_t H = states.front()->year().hours, n = area.points.size();
@@ -38,7 +40,7 @@ void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::sp
       steady[p] = sun[0][p * H + h];
       any = any || steady[p] >= kSunLux;
       for (std::size_t g = 0; g < taken.size(); ++g) {
-        taken[g][p] = std::max(0.0f, sun[0][p * H + h] - sun[g + 1][p * H + h]);
+        taken[g][p] = std::max(0.0f, sun[0][p * H + h] - sun[g + 1][p * H + h]) / states[g + 1]->share_taken();
         steady[p] -= taken[g][p];
       }
       steady[p] = std::max(0.0f, steady[p]);
@@ -61,7 +63,7 @@ std::vector<YearArea> rooms_facing_up(const PatchSet& patches, const VertexLight
   for (std::size_t r = 0; r < weight.size(); ++r) {
     if (weight[r].empty()) continue;
     YearArea& room = rooms.emplace_back();
-    room.name = patches.rooms[r];
+    room.name = patches.rooms[r], room.number = static_cast<std::uint32_t>(r);
     for (const auto& [point, area] : weight[r]) room.points.push_back(point), room.weight.push_back(area);
   }
   return rooms;
@@ -69,12 +71,11 @@ std::vector<YearArea> rooms_facing_up(const PatchSet& patches, const VertexLight
 
 std::vector<std::uint32_t> room_of_points(const PatchSet& patches, const VertexLightmap& map,
                                           const std::vector<YearArea>& rooms) {
-  std::vector<std::uint32_t> of(map.position.size(), static_cast<std::uint32_t>(rooms.size()));
-  if (patches.room.empty()) return of;
-  for (std::size_t p = 0; p < of.size(); ++p) {
-    const std::string& name = patches.rooms[patches.room[map.patch_of_point[p]]];
-    of[p] = static_cast<std::uint32_t>(std::ranges::find(rooms, name, &YearArea::name) - rooms.begin());
-  }
+  const auto none = static_cast<std::uint32_t>(rooms.size());
+  std::vector<std::uint32_t> place(patches.rooms.size(), none), of(map.position.size(), none);
+  for (std::uint32_t k = 0; k < rooms.size(); ++k) place[rooms[k].number] = k;
+  for (std::size_t p = 0; p < of.size() && !patches.room.empty(); ++p)
+    of[p] = place[patches.room[map.patch_of_point[p]]];
   return of;
 }
 
@@ -83,7 +84,7 @@ std::vector<YearArea> grids_of(const std::vector<SensorSet>& sets) {
   std::size_t next = 0;
   for (const SensorSet& set : sets) {
     YearArea& grid = grids.emplace_back();
-    grid.name = set.name;
+    grid.name = set.name, grid.number = static_cast<std::uint32_t>(grids.size() - 1);
     for (std::size_t k = 0; k < set.points.size(); ++k) {
       grid.points.push_back(next++);
       grid.weight.push_back(set.area_of_point.value_or(1));

@@ -134,7 +134,7 @@ std::vector<Reference> references(const Illumination& light, std::span<const Pla
   return out;
 }
 
-/// Each hour at points of its own.
+/// All light of each hour at points of its own, as far as there are enough; direct sun at all of them.
 YearComparisons compare(const WindowState& open, const Prepared& scene, std::span<const PlacesOfPoint> points,
                         const GatherPattern& pattern, std::span<const DaylightHour> hours,
                         std::span<const std::size_t> look_at, const Counts& counts, std::uint64_t seed,
@@ -158,18 +158,25 @@ YearComparisons compare(const WindowState& open, const Prepared& scene, std::spa
     const Illumination light(problem);
     std::vector<std::size_t> number;
     std::vector<const PlacesOfPoint*> own;
-    for (std::size_t p = k; p < points.size(); p += look_at.size()) number.push_back(p), own.push_back(&points[p]);
+    const std::size_t each = (points.size() + look_at.size() - 1) / look_at.size();
+    for (std::size_t j = 0; j < each; ++j)
+      number.push_back((k * each + j) % points.size()), own.push_back(&points[number.back()]);
     const std::vector<Reference> reference = references(light, own, counts.paths, stream_key(seed, kYearErrorPaths, h));
-    for (std::size_t j = 0; j < own.size(); ++j) {
-      const std::size_t at = number[j] * H + h;
+    for (std::size_t j = 0; j < own.size(); ++j)
       found.total.push_back(
-          {.x = total[at] / kWhiteEfficacy, .r = reference[j].r, .std_error = reference[j].std_error});
-      Comparison& of_direct = found.direct.emplace_back(Comparison{.x = direct[at] / kWhiteEfficacy});
-      for (std::size_t s = 0; s < own[j]->at.size(); ++s)
-        of_direct.r += own[j]->weight[s] * luminous_mean(light.sampler.delta_light(
-                                               own[j]->at[s].p, own[j]->at[s].n, {.sun_rays = counts.sun_rays},
-                                               stream_key(seed, kYearErrorPoints, h)));
-    }
+          {.x = total[number[j] * H + h] / kWhiteEfficacy, .r = reference[j].r, .std_error = reference[j].std_error});
+    const std::size_t first = found.direct.size();
+    found.direct.resize(first + points.size());
+    parallel_for(points.size(), 4, [&](std::size_t from, std::size_t to) {
+      for (std::size_t p = from; p < to; ++p) {
+        Comparison& of_direct = found.direct[first + p];
+        of_direct.x = direct[p * H + h] / kWhiteEfficacy;
+        for (std::size_t s = 0; s < points[p].at.size(); ++s)
+          of_direct.r += points[p].weight[s] * luminous_mean(light.sampler.delta_light(
+                                                   points[p].at[s].p, points[p].at[s].n, {.sun_rays = counts.sun_rays},
+                                                   stream_key(seed, kYearErrorPoints, h)));
+      }
+    });
   }
   return found;
 }

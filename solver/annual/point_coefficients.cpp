@@ -22,10 +22,6 @@ double luminous(const RowEntry& e, int channels) {
 
 }  // namespace
 
-bool PointCoefficients::sees_sky() const {
-  return std::any_of(straight.begin(), straight.end() - 1, [](float x) { return x > 0; });
-}
-
 void RowSums::add(std::uint32_t element, const RowEntry& e) {
   auto& sum = weight_[element];
   if (sum[0] == 0 && sum[1] == 0 && sum[2] == 0) touched_.push_back(element);

@@ -21,8 +21,6 @@ struct PointCoefficients {
     std::vector<float> nodes;
   };
   std::vector<OfRoom> suns;
-
-  bool sees_sky() const;
 };
 
 /// Memory that points need in turn: what a row has of each element.

@@ -37,7 +37,7 @@ struct ReflectedDaylight {
 /// kept     of a solve under a sky, complete.
 /// patches  that it was solved for, with mirrors and panes: over them the sun comes, too.
 /// nodes    directions of the sun.
-/// Threads: same bits for any thread count. Cost: 8 to 24 rays an element and node; one balance for eight lanes.
+/// Threads: same bits for any thread count. Cost: 8 to 24 rays an element and node; one balance for 32 lanes.
 ReflectedDaylight reflect_daylight(const KeptTransport& kept, const PatchSet& patches, const RayScene& rays,
                                    const SkyParts& parts, std::span<const Vec3> nodes, std::uint64_t seed,
                                    const Monitor& monitor = {});

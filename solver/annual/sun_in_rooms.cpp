@@ -20,7 +20,7 @@ constexpr double kMostFactor = 4;  ///< of what is known between nodes: beyond t
 /// A point of an element, and the flux that it stands for where a plane that faces the sun has 1.
 struct Place {
   Vec3 at, normal;
-  double flux;  ///< area times what is sent on, luminous mean [m2]
+  double flux;  ///< area times what is sent on from the room's side, luminous mean [m2]
   std::uint32_t room;
 };
 
@@ -28,14 +28,18 @@ std::vector<Place> places_on(const PatchSet& elements, const RayScene& rays, con
                              std::uint64_t seed) {
   std::vector<Place> places;
   for (std::size_t i = 0; i < elements.patch_count(); ++i) {
-    const std::uint32_t room = elements.room_of(i);
-    if (!sunlit[i] || (!elements.rooms.empty() && elements.rooms[room] == kOutdoors)) continue;
-    const double flux = elements.area[i] * luminous_mean(elements.albedo(i)) / kRays;
-    for (std::uint32_t k = 0; k < kRays; ++k) {
-      const auto u = sobol4(k, stream_key(seed, kSunOnElements, i));
-      const Vec3 p = point_on_triangle(elements.corner_positions(PatchId{i}), u[0], u[1]);
-      places.push_back({rays.off_surface(p, elements.normal[i]), elements.normal[i], flux, room});
-    }
+    if (!sunlit[i]) continue;
+    const auto add = [&](std::uint32_t room, double flux) {
+      if (!(flux > 0) || (!elements.rooms.empty() && elements.rooms[room] == kOutdoors)) return;
+      for (std::uint32_t k = 0; k < kRays; ++k) {
+        const auto u = sobol4(k, stream_key(seed, kSunOnElements, i));
+        const Vec3 p = point_on_triangle(elements.corner_positions(PatchId{i}), u[0], u[1]);
+        places.push_back({rays.off_surface(p, elements.normal[i]), elements.normal[i], flux / kRays, room});
+      }
+    };
+    add(elements.room_of(i), elements.area[i] * luminous_mean(elements.rho[i]));
+    for (const auto& [behind, share] : elements.patches_behind(i))  // what a diffuser passes on leaves its other side
+      add(elements.room_of(behind.value), elements.area[i] * share * luminous_mean(elements.tau[behind]));
   }
   return places;
 }

@@ -33,7 +33,7 @@ struct YearScene {
 };
 
 /// hours     that `year` is of.
-/// sun_rays  to the disc, where two of them disagree: the point lies in half-shadow.
+/// sun_rays  to the disc, where its pilots disagree: the point lies in half-shadow.
 /// Everything outlives it.
 YearScene year_scene(const Illumination& light, const SkyParts& fine, const ReflectedDaylight& reflected,
                      const YearLight& year, std::span<const DaylightHour> hours, double plan_reach,

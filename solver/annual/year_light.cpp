@@ -103,6 +103,7 @@ void series_of(const YearLight& year, std::span<const PointCoefficients> points,
           const AmongNodes& among = year.of_sun[h];
           float by_sun = 0;
           for (const auto& [room, of_node] : points[first + p].suns) {
+            if (of_node.empty()) continue;  // the sun is never up
             float sent = 0;
             for (std::size_t k = 0; k < among.node.size(); ++k) sent += among.weight[k] * of_node[among.node[k]];
             by_sun += sent * in_room[room * H + h];

@@ -37,8 +37,11 @@ import tempfile
 
 sys.dont_write_bytecode = True  # leaves no __pycache__ in the sources
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from hierarchy_bench import commit, cpu  # noqa: E402
 from make_scenes import Model, add, mul  # noqa: E402
 
+COLUMNS = ("commit,cpu,weather,scene,accuracy,hours,rms,bias,bias_error,rms_no_sun,p95,worst_hour,DA,DA_moved,said,true,"
+           "total").split(",")
 SHIPPED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "data", "scenes")
 GREY = {"floor": {"reflectance": 0.3}, "wall": {"reflectance": 0.6}, "ceiling": {"reflectance": 0.8},
         "facade": {"reflectance": 0.4}, "slat": {"reflectance": 0.7}, "ground": {"reflectance": 0.2},
@@ -308,8 +311,13 @@ def main():
                     "hours": asked.hours}, **{k: "%.3g" % v if isinstance(v, float) else v for k, v in figures.items()})
         print(", ".join("%s %s" % item for item in row.items()), flush=True)
         if asked.out:
+            row = dict({"commit": commit(), "cpu": cpu()}, **row)
+            is_new = not os.path.exists(asked.out)
             with open(asked.out, "a", newline="") as file:
-                csv.writer(file).writerow(row.values())
+                writer = csv.DictWriter(file, COLUMNS, restval="")
+                if is_new:
+                    writer.writeheader()
+                writer.writerow(row)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@
 #include "io/read_run_report.h"
 #include "pipeline/scene_of_result.h"
 #include "pipeline/wording.h"
+#include "solver/model/error.h"
 
 namespace clerestory {
 namespace {
@@ -26,6 +27,10 @@ ExitCode report_command(const Arguments& arguments, Console& console) {
   const PageFiles files = read_page_files();
   const WrittenResult result = read_result(arguments.input);
   console.has_read(files_of_scene(result, arguments.input));
+  if (result.texts.contains("settings.schedule"))
+    throw InputError(arguments.input +
+                     ": is a year of daylight, and a page tells of light at one time; its figures are in the .json and "
+                     ".sensors.csv beside it, and render --show DA_300 draws them.");
   const ReportTargets targets = report_targets(arguments.targets);
   RunReport report = new_report(arguments.input);
   report.seconds.read = console.elapsed();

@@ -74,6 +74,7 @@ SensorSet read_grid(const JsonObject& object, SensorKind kind, std::size_t room_
       sensors.points.push_back({p, normal});
     }
   }
+  sensors.area_of_point = spacing * spacing;
   return sensors;
 }
 
@@ -143,6 +144,7 @@ SensorSet grid_in(const NamedSpace& space, const JsonObject& object, SensorKind 
       if (spans.empty() || !(spans[0].floor + height < spans[0].ceiling)) continue;
       sensors.points.push_back({{p.x, p.y, spans[0].floor + height}, normal});
     }
+  sensors.area_of_point = spacing * spacing;
   return sensors;
 }
 

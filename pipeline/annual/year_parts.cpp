@@ -23,8 +23,13 @@ std::vector<AreaPoints> points_of(const std::vector<YearArea>& areas) {
 std::vector<YearArea> areas_of(const std::vector<AreaPoints>& points, const std::vector<AreaOfYear>& facts) {
   std::vector<YearArea> areas;
   for (std::size_t i = 0; i < points.size(); ++i)
-    areas.push_back(
-        {facts[i].name, {points[i].points.begin(), points[i].points.end()}, points[i].weight, {}, facts[i].blinds, {}});
+    areas.push_back({facts[i].name,
+                     {points[i].points.begin(), points[i].points.end()},
+                     points[i].weight,
+                     {},
+                     facts[i].blinds,
+                     {},
+                     0});
   return areas;
 }
 

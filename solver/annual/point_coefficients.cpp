@@ -28,8 +28,8 @@ void RowSums::add(std::uint32_t element, const RowEntry& e) {
   for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += e.weight[c];
 }
 
-void add_row(const LightRow& row, const Vec3& n, const SkyParts& fine, const PatchSet& elements,
-             const ReflectedDaylight& reflected, double share, RowSums& sums, PointCoefficients& out) {
+void add_row(const LightRow& row, const Vec3& n, const SkyParts& fine, const ReflectedDaylight& reflected, double share,
+             RowSums& sums, PointCoefficients& out) {
   constexpr double kWhole = 1e-4;  // of pi, that rounding leaves of a hemisphere in which nothing is in the way
   const int channels = reflected.channels;
   double open = 0;
@@ -48,17 +48,13 @@ void add_row(const LightRow& row, const Vec3& n, const SkyParts& fine, const Pat
   for (const RowEntry& e : row)
     if (e.is_of_sky())
       out.straight[fine.part_of(unpack_direction(e.number()))] += static_cast<float>(share * luminous(e, channels));
-  const std::size_t sky = out.reflected.size(), nodes = reflected.lanes - sky;
+  float* const lanes = out.reflected.data();
   sums.take([&](std::uint32_t element, const auto& weight) {
-    const std::uint32_t room = elements.room_of(element);
-    auto suns = std::ranges::find(out.suns, room, &PointCoefficients::OfRoom::room);
-    if (suns == out.suns.end()) suns = out.suns.insert(out.suns.end(), {room, std::vector<float>(nodes)});
     for (int c = 0; c < channels; ++c) {
       const auto w =
           static_cast<float>(share * luminous_weight(c, channels) * double{weight[static_cast<std::size_t>(c)]});
       const float* const B = reflected.of(element, c).data();
-      for (std::size_t l = 0; l < sky; ++l) out.reflected[l] += w * B[l];
-      for (std::size_t l = 0; l < nodes; ++l) suns->nodes[l] += w * B[sky + l];
+      for (std::size_t l = 0; l < reflected.lanes; ++l) lanes[l] += w * B[l];
     }
   });
 }

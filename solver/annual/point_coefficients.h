@@ -14,13 +14,7 @@ namespace clerestory {
 /// Luminous mean, of white light.
 struct PointCoefficients {
   std::vector<float> straight;   ///< of the fine parts of the sky and the ground: E = sum of it times radiance [sr]
-  std::vector<float> reflected;  ///< of the parts of ReflectedDaylight and the ground
-  /// Of its nodes of the sun, by the room that sends it on.
-  struct OfRoom {
-    std::uint32_t room;
-    std::vector<float> nodes;
-  };
-  std::vector<OfRoom> suns;
+  std::vector<float> reflected;  ///< by lane of ReflectedDaylight
 };
 
 /// Memory that points need in turn: what a row has of each element.
@@ -48,8 +42,7 @@ class RowSums {
 ///
 /// n  unit normal there. Where the row says that nothing hides the sky or the ground, what it sees of their parts is
 ///    exact.
-/// elements  that `reflected` is of.
-void add_row(const LightRow& row, const Vec3& n, const SkyParts& fine, const PatchSet& elements,
-             const ReflectedDaylight& reflected, double share, RowSums& sums, PointCoefficients& out);
+void add_row(const LightRow& row, const Vec3& n, const SkyParts& fine, const ReflectedDaylight& reflected, double share,
+             RowSums& sums, PointCoefficients& out);
 
 }  // namespace clerestory

@@ -38,15 +38,11 @@ Field straight_from_sky(const KeptTransport& kept, const SkyParts& parts, std::s
   return E;
 }
 
-/// From the sun at each node, N x (nodes x channels).
-struct FromSuns {
-  Field all;       ///< straight, and over mirrors and panes
-  Field straight;  ///< its part
-};
+/// From the sun at each node, straight and over mirrors and panes, N x (nodes x channels).
+///
 /// patches  with mirrors and panes, which elements leave out.
-FromSuns from_suns(const KeptTransport& kept, const PatchSet& patches, const RayScene& rays,
-                   std::span<const Vec3> nodes, std::uint64_t seed, const Monitor& monitor,
-                   std::vector<std::vector<MirrorWay>>& ways) {
+Field from_suns(const KeptTransport& kept, const PatchSet& patches, const RayScene& rays, std::span<const Vec3> nodes,
+                std::uint64_t seed, const Monitor& monitor, std::vector<std::vector<MirrorWay>>& ways) {
   Lights suns;
   std::vector<std::size_t> node_of_sun;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -62,31 +58,11 @@ FromSuns from_suns(const KeptTransport& kept, const PatchSet& patches, const Ray
   }
   std::vector<Layer> all(nodes.size());
   for (Layer& layer : all) layer.lights.resize(suns.suns.size());
-  std::vector<Layer> straight = all;
-  for (std::size_t k = 0; k < node_of_sun.size(); ++k) {
-    all[node_of_sun[k]].lights[k] = Spectrum(1.0);
-    if (!suns.suns[k].is_image()) straight[node_of_sun[k]].lights[k] = Spectrum(1.0);
-  }
+  for (std::size_t k = 0; k < node_of_sun.size(); ++k) all[node_of_sun[k]].lights[k] = Spectrum(1.0);
   const Problem problem{kept.elements, rays, suns};
   DirectRows rows;
   direct_light(Illumination(problem), {.shadow_rays = 8, .edge_rays = 16, .sky_rays = 0, .seed = seed}, monitor, &rows);
-  return {direct_layers(kept.elements, rows, all).delta_light,
-          direct_layers(kept.elements, rows, straight).delta_light};
-}
-
-/// Of nodes first, first + 1, ..., whose irradiance straight from the sun is E and whose radiosity is B.
-void add_flux_of_suns(const PatchSet& elements, const Field& E, const Field& B, std::size_t first, std::size_t nodes,
-                      ReflectedDaylight& out) {
-  const std::size_t count = static_cast<std::size_t>(E.channels / elements.channels);
-  for (std::size_t k = 0; k < count; ++k) {
-    const Field E_of_node = one_layer(E, k, elements.channels), B_of_node = one_layer(B, k, elements.channels);
-    for (std::size_t i = 0; i < elements.patch_count(); ++i) {
-      const std::size_t at = elements.room_of(i) * nodes + first + k;
-      out.first_flux[at] += elements.area[i] * luminous_mean(elements.scattered(E_of_node, i));
-      out.all_flux[at] += elements.area[i] * luminous_mean(B_of_node[i]);
-      if (!E_of_node[i].is_black()) out.sunlit[i] = true;
-    }
-  }
+  return direct_layers(kept.elements, rows, all).delta_light;
 }
 
 }  // namespace
@@ -101,9 +77,6 @@ ReflectedDaylight reflect_daylight(const KeptTransport& kept, const PatchSet& pa
   ReflectedDaylight out;
   out.lanes = sky + nodes.size(), out.channels = elements.channels;
   out.B.resize(n * channels * out.lanes);
-  out.first_flux.resize(elements.room_count() * nodes.size());
-  out.all_flux.resize(out.first_flux.size());
-  out.sunlit.resize(n);
   for (std::size_t first = 0, count; first < out.lanes; first += count) {
     monitor.report("reflected", static_cast<double>(first) / static_cast<double>(out.lanes));
     if (monitor.should_stop()) {
@@ -111,12 +84,10 @@ ReflectedDaylight reflect_daylight(const KeptTransport& kept, const PatchSet& pa
       return out;
     }
     count = std::min(at_once, (first < sky ? sky : out.lanes) - first);
-    FromSuns suns;
-    if (first >= sky)
-      suns = from_suns(kept, patches, rays, nodes.subspan(first - sky, count), seed, monitor, out.sun_ways);
-    const Field E = first < sky ? straight_from_sky(kept, parts, first, count) : std::move(suns.all);
+    const Field E =
+        first < sky ? straight_from_sky(kept, parts, first, count)
+                    : from_suns(kept, patches, rays, nodes.subspan(first - sky, count), seed, monitor, out.sun_ways);
     const Balanced s = balance(elements, kept.tree, kept.transport, Field(n, E.channels), E, {}, kResidual, monitor);
-    if (first >= sky) add_flux_of_suns(elements, suns.straight, s.B, first - sky, nodes.size(), out);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t k = 0; k < count; ++k)
         for (std::size_t c = 0; c < channels; ++c)

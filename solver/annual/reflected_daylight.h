@@ -18,11 +18,7 @@ namespace clerestory {
 struct ReflectedDaylight {
   std::size_t lanes = 0;  ///< parts + 1 + nodes
   int channels = 1;
-  std::vector<float> B;  ///< N x channels x lanes
-  /// Of each room and node, room * nodes + node, luminous means: what surfaces send on of the sun that falls on them
-  /// straight, and of all light [W].
-  std::vector<double> first_flux, all_flux;
-  std::vector<bool> sunlit;                      ///< N, elements that the sun reaches at any node
+  std::vector<float> B;                          ///< N x channels x lanes
   std::vector<std::vector<MirrorWay>> sun_ways;  ///< of each node, over which mirrors and panes its light comes, too
   bool complete = true;                          ///< false: stopped
 

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "solver/annual/sun_in_rooms.h"
 #include "solver/gather/gather_point.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
@@ -62,7 +61,7 @@ class SharedPlans {
 YearScene year_scene(const Illumination& light, const SkyParts& fine, const ReflectedDaylight& reflected,
                      const YearLight& year, std::span<const DaylightHour> hours, double plan_reach,
                      std::size_t sun_rays, std::uint64_t seed) {
-  YearScene scene{light, fine, reflected, year, {}, {}, {}, {}, plan_reach, parts_around(fine)};
+  YearScene scene{light, fine, reflected, year, {}, {}, {}, plan_reach, parts_around(fine)};
   for (std::size_t h = 0; h < hours.size(); ++h) {
     if (!(year.sun[h] > 0)) continue;
     std::span<const MirrorWay> ways;
@@ -74,8 +73,6 @@ YearScene year_scene(const Illumination& light, const SkyParts& fine, const Refl
     scene.hour_of_sun.push_back(h);
     scene.part_of_sun.push_back(static_cast<std::uint32_t>(fine.part_of(hours[h].sun)));
   }
-  scene.in_room = sun_in_rooms(light.problem.patches, light.problem.rays, reflected, scene.suns, scene.hour_of_sun,
-                               year.of_sun, seed);
   return scene;
 }
 
@@ -84,7 +81,7 @@ unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint
   unsigned long long rays = 0;
   LightRow row;
   std::vector<PointCoefficients> coefficients(
-      points.size(), {std::vector<float>(scene.fine.count() + 1), std::vector<float>(scene.year.coarse.parts()), {}});
+      points.size(), {std::vector<float>(scene.fine.count() + 1), std::vector<float>(scene.reflected.lanes)});
   SharedPlans plans(scene, pattern);
   std::vector<ReceivingPoint> places;
   std::vector<bool> may_come;
@@ -92,8 +89,7 @@ unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint
     for (std::size_t k = 0; k < points[p].at.size(); ++k) {
       const ReceivingPoint& at = points[p].at[k];
       gather_point(scene.light, at.p, at.n, pattern, plans.at(at, rays), rays, &row);
-      add_row(row, at.n, scene.fine, scene.light.problem.patches, scene.reflected, points[p].weight[k], sums,
-              coefficients[p]);
+      add_row(row, at.n, scene.fine, scene.reflected, points[p].weight[k], sums, coefficients[p]);
     }
     const std::vector<bool> near = parts_near_seen(scene, coefficients[p]);
     for (const ReceivingPoint& at : points[p].at) {
@@ -111,7 +107,7 @@ unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint
     for (std::size_t k = 0; k < points[p].at.size(); ++k, ++place)
       for (std::size_t s = 0; s < suns; ++s)
         sun[p * H + scene.hour_of_sun[s]] += static_cast<float>(points[p].weight[k]) * at_places[place * suns + s];
-  series_of(scene.year, coefficients, sun, scene.in_room, total, direct);
+  series_of(scene.year, coefficients, sun, total, direct);
   return rays;
 }
 

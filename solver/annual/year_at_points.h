@@ -27,7 +27,6 @@ struct YearScene {
   std::vector<SunOfHour> suns;             ///< of the hours with sun, ascending
   std::vector<std::size_t> hour_of_sun;    ///< in `year`
   std::vector<std::uint32_t> part_of_sun;  ///< fine, by sun
-  std::vector<float> in_room;              ///< by sun_in_rooms()
   double plan_reach;  ///< how far from where it was made a gather's plan serves points that face alike [m]
   std::vector<std::vector<std::uint32_t>> parts_around;  ///< of each fine part: those within kAround of it, itself too
 };

@@ -83,7 +83,7 @@ YearLight light_of_year(std::span<const DaylightHour> hours, const SkyParts& fin
 }
 
 void series_of(const YearLight& year, std::span<const PointCoefficients> points, std::span<const float> sun,
-               std::span<const float> in_room, std::span<float> total, std::span<float> direct) {
+               std::span<float> total, std::span<float> direct) {
   constexpr auto kLux = static_cast<float>(kWhiteEfficacy);
   const std::size_t H = year.hours, coarse = year.coarse.parts();
   Gathered straight, reflected;
@@ -100,14 +100,11 @@ void series_of(const YearLight& year, std::span<const PointCoefficients> points,
       for (std::size_t p = 0; p < count; ++p)
         for (std::size_t h = hour; h < std::min(hour + kHours, H); ++h) {
           const std::size_t at = (first + p) * H + h;
+          const float* const of_node = points[first + p].reflected.data() + coarse;
           const AmongNodes& among = year.of_sun[h];
           float by_sun = 0;
-          for (const auto& [room, of_node] : points[first + p].suns) {
-            if (of_node.empty()) continue;  // the sun is never up
-            float sent = 0;
-            for (std::size_t k = 0; k < among.node.size(); ++k) sent += among.weight[k] * of_node[among.node[k]];
-            by_sun += sent * in_room[room * H + h];
-          }
+          for (std::size_t k = 0; k < among.node.size(); ++k)
+            if (among.weight[k] > 0) by_sun += among.weight[k] * of_node[among.node[k]];
           direct[at] = kLux * year.sun[h] * sun[at];
           total[at] = kLux * (sum[p][h - hour] + year.sun[h] * by_sun) + direct[at];
         }

@@ -51,10 +51,9 @@ YearLight light_of_year(std::span<const DaylightHour> hours, const SkyParts& fin
 /// Illuminance at points by the hour [lx].
 ///
 /// sun     points x H, by sun_on_points().
-/// in_room rooms x H, by sun_in_rooms().
 /// total   points x H, replaced: all light. direct: the same, straight from the sun.
 /// Same bits for points in any company, and on every processor.
 void series_of(const YearLight& year, std::span<const PointCoefficients> points, std::span<const float> sun,
-               std::span<const float> in_room, std::span<float> total, std::span<float> direct);
+               std::span<float> total, std::span<float> direct);
 
 }  // namespace clerestory

@@ -75,7 +75,6 @@ enum Stream : std::uint64_t {
   kSunOfHour = 0xe1,
   kYearErrorPoints = 0xe2,
   kYearErrorPaths = 0xe3,
-  kSunOnElements = 0xe4,
   // Panes that turn a ray back, by ray; and whether one of these is followed further.
   kPanesOfRay = 0x88,
   kEchoes = 0x89,

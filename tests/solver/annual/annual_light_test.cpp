@@ -52,10 +52,10 @@ TEST(SeriesOf, OpenGroundIsSkyAndSunOfEachHour) {
   for (const Vec3& n : {Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
     std::vector<PointCoefficients> point(1);
     point[0].straight = fine.on_plane(n);
-    point[0].reflected.assign(coarse.count() + 1, 0.0f);
+    point[0].reflected.assign(coarse.count() + 1 + nodes.direction.size(), 0.0f);
     std::vector<float> sun(H), total(H), direct(H);
     for (std::size_t h = 0; h < H; ++h) sun[h] = static_cast<float>(std::max(0.0, dot(n, hours[h].sun)));
-    series_of(year, point, sun, {}, total, direct);
+    series_of(year, point, sun, total, direct);
     for (std::size_t h = 0; h < H; ++h) {
       const double of_sun = hours[h].direct_normal_lux() * std::max(0.0, hours[h].sun.z);
       const double level = hours[h].diffuse_horizontal_lux + of_sun;
@@ -71,24 +71,19 @@ TEST(SeriesOf, APointHasTheSameBitsInAnyCompany) {
   const SkyParts fine(145), coarse(145);
   const SunNodes nodes = nodes_of(hours);
   const YearLight year = light_of_year(hours, fine, coarse, nodes);
-  const std::size_t H = hours.size(), lanes = coarse.count() + 1;
+  const std::size_t H = hours.size(), lanes = coarse.count() + 1 + nodes.direction.size();
   std::vector<PointCoefficients> points(7);
-  std::vector<float> sun(7 * H), in_room(3 * H);
-  for (std::size_t k = 0; k < in_room.size(); ++k) in_room[k] = 0.5f + 0.1f * static_cast<float>(k % 7);
+  std::vector<float> sun(7 * H);
   for (std::size_t p = 0; p < points.size(); ++p) {
     points[p].straight.assign(fine.count() + 1, 0.0f), points[p].reflected.assign(lanes, 0.0f);
     for (std::size_t k = p; k < fine.count(); k += p + 2) points[p].straight[k] = 0.01f * static_cast<float>(k % 13);
     for (std::size_t l = 0; l < lanes; ++l) points[p].reflected[l] = 0.001f * static_cast<float>((l + p) % 17);
-    for (std::uint32_t room = 0; room < p % 3; ++room) {
-      std::vector<float>& of = points[p].suns.emplace_back(PointCoefficients::OfRoom{room, {}}).nodes;
-      for (std::size_t l = 0; l < nodes.direction.size(); ++l) of.push_back(0.002f * static_cast<float>((l + p) % 19));
-    }
     for (std::size_t h = 0; h < H; ++h) sun[p * H + h] = static_cast<float>((h + p) % 5) / 7;
   }
   std::vector<float> total(7 * H), direct(7 * H), alone(H), alone_direct(H);
-  series_of(year, points, sun, in_room, total, direct);
+  series_of(year, points, sun, total, direct);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    series_of(year, std::span(points).subspan(p, 1), std::span(sun).subspan(p * H, H), in_room, alone, alone_direct);
+    series_of(year, std::span(points).subspan(p, 1), std::span(sun).subspan(p * H, H), alone, alone_direct);
     EXPECT_TRUE(std::equal(alone.begin(), alone.end(), &total[p * H])) << p;
     EXPECT_TRUE(std::equal(alone_direct.begin(), alone_direct.end(), &direct[p * H])) << p;
   }

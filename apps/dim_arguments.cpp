@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "io/text.h"
+#include "solver/dimming/dim_to_target.h"
 
 namespace clerestory {
 namespace {
@@ -18,7 +19,7 @@ std::optional<GridTarget> grid_target_of(std::string_view words) {
   const std::size_t at = words.rfind('=');
   if (at == words.npos || at == 0) return {};
   const auto lux = to_number(words.substr(at + 1));
-  if (!lux || !std::isfinite(*lux) || !(*lux > 0)) return {};
+  if (!lux || !std::isfinite(*lux) || !(*lux >= kLeastTarget)) return {};
   target.grid = words.substr(0, at);
   target.lux = *lux;
   return target;
@@ -27,9 +28,9 @@ std::optional<GridTarget> grid_target_of(std::string_view words) {
 std::string problem_with_grid_target(const std::string& words) {
   return grid_target_of(words)
              ? std::string()
-             : "'" + quotable(words) +
-                   "' is no illuminance above 0 lx of a set of sensors; write GRID=LUX for its mean or "
-                   "GRID=LUX:min for its least sensor, as in desk=500";
+             : text("'", quotable(words), "' is no illuminance of ", kLeastTarget,
+                    " lx or more of a set of sensors; write GRID=LUX for its mean or GRID=LUX:min for its least "
+                    "sensor, as in desk=500");
 }
 
 std::string problem_with_uniformity(const std::string& words) {

@@ -5,6 +5,7 @@
 #include "io/annual/annual_report.h"
 #include "io/write_result.h"
 #include "io/write_sensors.h"
+#include "solver/model/error.h"
 
 namespace clerestory {
 namespace {
@@ -22,6 +23,16 @@ std::vector<NamedFile> YearFiles::named() const {
   return {{"-o", output},
           {"rooms and grids", areas(), true, "name another -o"},
           {"the sensors' output", sensors(), true, "name another: --sensors-out"}};
+}
+
+void YearFiles::check_places(bool has_sensors) const {
+  if (!has_sensors && !sensors_out.empty())
+    throw InputError(
+        "--sensors-out " + sensors_out +
+        ": there are no sensors to write; give --sensors POINTS.csv to the run of the year, or \"sensors\" "
+        "in the scene file.");
+  check_writable(output), check_writable(areas());
+  if (has_sensors) check_writable(sensors());
 }
 
 std::string YearFiles::told(const YearSolved& solved) const {

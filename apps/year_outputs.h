@@ -20,6 +20,8 @@ struct YearFiles {
   std::string sensors() const;  ///< as asked for, or OUT.sensors.csv
   /// All three, for what must not be overwritten.
   std::vector<NamedFile> named() const;
+  /// throws  InputError where one of them could not be written, or sensors' output is asked for and there are none.
+  void check_places(bool has_sensors) const;
   /// "OUT.vtp, OUT.json, OUT.sensors.csv"
   std::string told(const YearSolved& solved) const;
 };

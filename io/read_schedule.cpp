@@ -72,6 +72,8 @@ Schedule from_file(const std::string& file) {
 
 }  // namespace
 
+bool is_hours_of_day(std::string_view words) { return daily_hours(words).has_value(); }
+
 Schedule read_schedule(std::string_view asked) {
   const std::string name(asked);
   if (const auto daily = daily_hours(asked)) return every_day(name, *daily);

@@ -13,6 +13,7 @@
 #include "apps/finish_report.h"
 #include "apps/run.h"
 #include "apps/solve_report.h"
+#include "apps/year_arguments.h"
 #include "apps/year_outputs.h"
 #include "io/annual/file_digest.h"
 #include "io/annual/honeybee_folder.h"
@@ -47,25 +48,6 @@ struct Arguments {
   std::vector<double> thresholds;
   std::optional<std::string> sky_parts, part;
 };
-
-/// "2/4" as its two numbers; nothing where it is no part.
-std::optional<std::pair<std::size_t, std::size_t>> part_of(const std::string& words) {
-  constexpr double kMost = 1e6;
-  const std::size_t slash = words.find('/');
-  if (slash == words.npos) return {};
-  const auto number = [](const std::string& s) {
-    const bool digits = !s.empty() && std::ranges::all_of(s, [](char c) { return c >= '0' && c <= '9'; });
-    return digits ? to_number(s).value_or(0) : 0;
-  };
-  const double part = number(words.substr(0, slash)), parts = number(words.substr(slash + 1));
-  if (part < 1 || part > parts || parts > kMost) return {};
-  return std::pair(static_cast<std::size_t>(part), static_cast<std::size_t>(parts));
-}
-
-std::string problem_with_part(const std::string& words) {
-  if (part_of(words)) return {};
-  return "'" + quotable(words) + "' is no part; give i/n, part i of n, with 1 <= i <= n: 2/4";
-}
 
 /// Series of the hours as they come, into the places that were asked for.
 class SeriesOutputs {
@@ -126,9 +108,10 @@ class SeriesOutputs {
 };
 
 /// Of what is asked, by the arguments.
-YearSettings year_settings(const Arguments& arguments, const Scene& scene, const Schedule& schedule) {
+YearSettings year_settings(const Arguments& arguments, const Scene& scene, const Schedule& schedule, Console& console) {
   YearSettings settings;
   settings.solve = effective_settings(arguments.common, arguments.solve, scene);
+  leave_out_what_a_year_does_not_follow(settings.solve, scene.file, console);
   settings.is_occupied = schedule.occupied;
   if (!arguments.thresholds.empty()) {
     settings.threshold = arguments.thresholds.front();
@@ -139,10 +122,11 @@ YearSettings year_settings(const Arguments& arguments, const Scene& scene, const
   return settings;
 }
 
-std::vector<Figure> as_figures(const Arguments& arguments, const YearSettings& asked, const YearSolved& solved) {
+std::vector<Figure> as_figures(const Arguments& arguments, const Schedule& schedule, const YearSettings& asked,
+                               const YearSolved& solved) {
   std::vector<Figure> out = as_figures(solved.solved.settings, solved.solved.patches.channels, arguments.read);
   out.push_back({"weather", fs::path(arguments.weather).filename().string()});
-  out.push_back({"schedule", arguments.schedule});
+  out.push_back({"schedule", schedule.name});
   out.push_back({"threshold", asked.threshold});
   out.push_back({"sky_parts", static_cast<long long>(solved.sky_parts)});
   out.push_back({"sun_positions", static_cast<long long>(solved.sun_nodes)});
@@ -164,7 +148,7 @@ std::vector<FileOfRun> files_of_run(const Arguments& arguments, const Scene& sce
   std::vector<fs::path> files = scene.files;
   files.emplace_back(arguments.weather);
   if (!arguments.sensors.empty()) files.emplace_back(arguments.sensors);
-  if (fs::is_regular_file(arguments.schedule)) files.emplace_back(arguments.schedule);
+  if (!is_hours_of_day(arguments.schedule)) files.emplace_back(arguments.schedule);
   std::vector<FileOfRun> all;
   for (const fs::path& file : files) all.push_back({short_name(file), file_digest(file)});
   return all;
@@ -279,12 +263,14 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
       daylight_year(weather, scene.place.value_or(weather.place), north_of(scene, console), scene.ground_reflectance);
   for (const std::string& line : year.warnings) console.warn(line);
   warn_of_lamps(scene, console);
-  YearSettings settings = year_settings(arguments, scene, schedule);
-  if (all_sensor_points(scene.sensors).empty() && (!arguments.hours.empty() || !arguments.honeybee.empty()))
+  YearSettings settings = year_settings(arguments, scene, schedule, console);
+  const bool has_sensors = !all_sensor_points(scene.sensors).empty();
+  if (!has_sensors && (!arguments.hours.empty() || !arguments.honeybee.empty()))
     throw InputError(
         std::string(arguments.hours.empty() ? "--honeybee" : "--hours") +
         ": there are no sensors whose hours could be written; give --sensors POINTS.csv, or \"sensors\" in "
         "the scene file.");
+  if (!arguments.part) arguments.files.check_places(has_sensors);
   SeriesOutputs series(arguments, scene, year, console);
   settings.keeps_all_hours = series.any();
   lap.add_to(report.seconds.read);
@@ -296,7 +282,7 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
   const double read_seconds = report.seconds.read;
   fill_report(report, scene, solved.solved);
   report.seconds.read = read_seconds;
-  report.settings = as_figures(arguments, settings, solved);
+  report.settings = as_figures(arguments, schedule, settings, solved);
   if (solved.error_sensors) report.error_sensors = figures_of(*solved.error_sensors);
   if (solved.error_points) report.error = figures_of(*solved.error_points);
   if (!arguments.part) warn_of_year(solved, annual, console);
@@ -309,8 +295,9 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
                outputs);
   finish_report(report, arguments.common, console, outputs);
   say_year(arguments, solved, annual, report, console);
-  series.commit(scene, solved);
+  // Figures first: they are whole without the series, which can be asked for again.
   console.commit(outputs);
+  series.commit(scene, solved);
   console.say("  results " + results_of(arguments, solved));
   return kDone;
 }
@@ -339,7 +326,7 @@ void add_annual_command(CLI::App& program, Task& task) {
       ->type_name("LUX[,LUX...]")
       ->delimiter(',')
       ->expected(1, 1 + static_cast<int>(kMostThresholds))
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Validator(problem_with_threshold, ""));
   add_choice(command, "--sky-parts", arguments->sky_parts, {"145", "577", "2305"},
              "parts of the sky (default: 145 for draft, 577 for standard, 2305 for fine)");
   add_checked_word(command, "--accuracy", arguments->solve.accuracy, problem_with_accuracy,
@@ -362,11 +349,14 @@ void add_annual_command(CLI::App& program, Task& task) {
   add_common_options(command, arguments->common);
   command.footer("example: clerestory annual data/scenes/office.json --weather city.epw -o office_year.vtp");
   command.callback([arguments, &task] {
+    if (const std::string problem = problem_with_thresholds(arguments->thresholds); !problem.empty())
+      throw CLI::ValidationError("--threshold", problem);
     task = [arguments] {
       std::vector<NamedFile> files = {{"--weather", arguments->weather, false},
                                       {"--sensors", arguments->sensors, false},
                                       {"--hours", arguments->hours},
                                       {"--honeybee", arguments->honeybee}};
+      if (!is_hours_of_day(arguments->schedule)) files.push_back({"--schedule", arguments->schedule, false});
       for (const NamedFile& file : arguments->files.named())
         if (!arguments->part || file.option == "-o") files.push_back(file);
       return run(arguments->common, arguments->input, std::move(files),

@@ -6,6 +6,7 @@
 #include "apps/finish_report.h"
 #include "apps/run.h"
 #include "apps/solution_warnings.h"
+#include "io/annual/year_part_tables.h"
 #include "io/bake/atlas_files.h"
 #include "io/bake/baked_files.h"
 #include "io/picture/encode.h"
@@ -146,6 +147,7 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
     if (file.is_written) check_writable(file.file);
   if (arguments.wants_atlas()) require_picture_files();
   const WrittenResult result = read_result(arguments.input);
+  require_whole_year(result);
   console.has_read(files_of_scene(result, arguments.input));
   const double exposure = exposure_of(result, arguments.exposure);
   Outputs outputs;

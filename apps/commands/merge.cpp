@@ -30,6 +30,7 @@ ExitCode merge_command(const Arguments& arguments, Console& console) {
     merge.add(std::move(result));
   }
   MergedYear year = merge.finish();
+  arguments.files.check_places(!year.sensors.empty());
   for (const std::string& warning : year.report.warnings) console.warn(warning);
   Outputs outputs;
   write_year(arguments.files, year.result, year.solved, year.annual, year.sensors, year.report, outputs);

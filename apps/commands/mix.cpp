@@ -9,6 +9,7 @@
 #include "apps/run.h"
 #include "apps/solution_warnings.h"
 #include "apps/solve_report.h"
+#include "io/annual/year_part_tables.h"
 #include "io/atomic_file.h"
 #include "io/read_result.h"
 #include "io/read_run_report.h"
@@ -69,6 +70,7 @@ ExitCode mix_command(const Arguments& arguments, Console& console) {
   if (!arguments.sensors_output.empty()) check_writable(arguments.sensors_output);
   Lap lap;
   WrittenResult result = read_result(arguments.input);
+  require_whole_year(result);
   console.has_read(files_of_scene(result, arguments.input));
   double read = 0;
   lap.add_to(read);

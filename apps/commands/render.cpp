@@ -7,6 +7,7 @@
 #include "apps/run.h"
 #include "apps/solution_warnings.h"
 #include "apps/view_words.h"
+#include "io/annual/year_part_tables.h"
 #include "io/atomic_file.h"
 #include "io/picture/encode.h"
 #include "io/read_result.h"
@@ -34,6 +35,7 @@ ExitCode render_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   require_picture_files();
   const WrittenResult result = read_result(arguments.input);
+  require_whole_year(result);
   console.has_read(files_of_scene(result, arguments.input));
   const RenderedView view =
       render_view(result, arguments.input, arguments.view, arguments.as_exr(), console, console.monitor());

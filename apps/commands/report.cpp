@@ -6,6 +6,7 @@
 #include "apps/finish_report.h"
 #include "apps/run.h"
 #include "apps/target_arguments.h"
+#include "io/annual/year_part_tables.h"
 #include "io/atomic_file.h"
 #include "io/read_result.h"
 #include "io/read_run_report.h"
@@ -26,6 +27,7 @@ ExitCode report_command(const Arguments& arguments, Console& console) {
   check_writable(arguments.output);
   const PageFiles files = read_page_files();
   const WrittenResult result = read_result(arguments.input);
+  require_whole_year(result);
   console.has_read(files_of_scene(result, arguments.input));
   if (result.texts.contains("settings.schedule"))
     throw InputError(arguments.input +

@@ -14,7 +14,7 @@ class Hdf5Series : public HourSeries {
  public:
   Hdf5Series(const Hdf5Functions& hdf5, const std::filesystem::path& destination, std::span<const int> hours,
              const std::vector<SeriesPoints>& sets)
-      : hdf5_(hdf5), hours_(hours.size()), file_(destination) {
+      : Hdf5Series(hdf5, destination, hours.size()) {  // from here on the destructor closes what is open
     check(hdf5_.create(file_.name_to_open().c_str(), id_));
     check(hdf5_.write_ints(id_, "hour", hours.data(), hours.size()));
     for (const SeriesPoints& set : sets) {
@@ -51,6 +51,9 @@ class Hdf5Series : public HourSeries {
   }
 
  private:
+  Hdf5Series(const Hdf5Functions& hdf5, const std::filesystem::path& destination, std::size_t hours)
+      : hdf5_(hdf5), hours_(hours), file_(destination) {}
+
   struct Set {
     Hdf5Id total = -1, direct = -1;
     std::size_t done = 0, missing = 0;  ///< rows

@@ -115,15 +115,15 @@ void HoneybeeFolder::add(std::size_t grid, std::size_t light_path, std::size_t s
   if (!rows) {
     const fs::path own = folder_ / path.name / path.states[state];
     for (const char* kind : {"total", "direct"}) make_folder(own / kind);
-    const std::string file = ids_[grid] + ".npy";
-    rows.reset(new Rows{{own / "total" / file, points, hours_}, {own / "direct" / file, points, hours_}, points});
+    rows = std::make_unique<Rows>(own, ids_[grid] + ".npy", points, hours_);
   }
   rows->total.add(total);
   rows->direct.add(direct);
   rows->missing -= total.size() / hours_;
   if (rows->missing > 0) return;
-  rows->total.commit();
-  rows->direct.commit();
+  rows->total.end(), rows->direct.end();
+  rows->total_file.commit();
+  rows->direct_file.commit();
   open_.erase({grid, light_path, state});
 }
 

@@ -51,8 +51,16 @@ class HoneybeeFolder {
 
  private:
   struct Rows {
+    AtomicFile total_file, direct_file;
     NpyRows total, direct;
     std::size_t missing;  ///< rows
+
+    Rows(const std::filesystem::path& folder, const std::string& file, std::size_t points, std::size_t hours)
+        : total_file(folder / "total" / file),
+          direct_file(folder / "direct" / file),
+          total(total_file, points, hours),
+          direct(direct_file, points, hours),
+          missing(points) {}
   };
 
   std::filesystem::path folder_;

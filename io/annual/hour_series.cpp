@@ -1,6 +1,6 @@
 #include "io/annual/hour_series.h"
 
-#include <deque>
+#include <vector>
 
 #include "io/annual/hdf5_series.h"
 #include "io/annual/npy_file.h"
@@ -10,19 +10,19 @@
 namespace clerestory {
 namespace {
 
-/// A folder of .npy files.
+/// A folder of .npy files, which appear together.
 class NpySeries : public HourSeries {
  public:
   NpySeries(const std::filesystem::path& folder, std::span<const int> hours, const std::vector<SeriesPoints>& sets) {
     make_folder(folder);
-    write_npy(folder / "hour.npy", hours);
+    write_npy(files_.open(folder / "hour.npy"), hours);
     for (const SeriesPoints& set : sets) {
       const std::filesystem::path own = folder / set.name;
       make_folder(own);
-      write_npy(own / "position.npy", coordinates_of(set.points, &SensorPoint::position), 3);
-      write_npy(own / "normal.npy", coordinates_of(set.points, &SensorPoint::normal), 3);
-      total_.emplace_back(own / "total.npy", set.points.size(), hours.size());
-      direct_.emplace_back(own / "direct.npy", set.points.size(), hours.size());
+      write_npy(files_.open(own / "position.npy"), coordinates_of(set.points, &SensorPoint::position), 3);
+      write_npy(files_.open(own / "normal.npy"), coordinates_of(set.points, &SensorPoint::normal), 3);
+      total_.emplace_back(files_.open(own / "total.npy"), set.points.size(), hours.size());
+      direct_.emplace_back(files_.open(own / "direct.npy"), set.points.size(), hours.size());
     }
   }
   void add(std::size_t set, std::span<const float> total, std::span<const float> direct) override {
@@ -30,12 +30,14 @@ class NpySeries : public HourSeries {
     direct_[set].add(direct);
   }
   void commit() override {
-    for (std::deque<NpyRows>* files : {&total_, &direct_})
-      for (NpyRows& file : *files) file.commit();
+    for (const std::vector<NpyRows>* arrays : {&total_, &direct_})
+      for (const NpyRows& rows : *arrays) rows.end();
+    files_.commit();
   }
 
  private:
-  std::deque<NpyRows> total_, direct_;  ///< by set
+  Outputs files_;
+  std::vector<NpyRows> total_, direct_;  ///< by set
 };
 
 }  // namespace

@@ -32,23 +32,18 @@ std::string npy_header(const char* type, std::initializer_list<std::size_t> shap
   return header + dictionary;
 }
 
-void write_npy(const std::filesystem::path& file, std::span<const int> values) {
+void write_npy(AtomicFile& file, std::span<const int> values) {
   static_assert(sizeof(int) == 4);
-  AtomicFile whole(file);
-  whole.write(npy_header("i4", {values.size()}));
-  whole.write(bytes_of(values));
-  whole.commit();
+  file.write(npy_header("i4", {values.size()}));
+  file.write(bytes_of(values));
 }
 
-void write_npy(const std::filesystem::path& file, std::span<const double> values, std::size_t columns) {
-  AtomicFile whole(file);
-  whole.write(npy_header("f8", {values.size() / columns, columns}));
-  whole.write(bytes_of(values));
-  whole.commit();
+void write_npy(AtomicFile& file, std::span<const double> values, std::size_t columns) {
+  file.write(npy_header("f8", {values.size() / columns, columns}));
+  file.write(bytes_of(values));
 }
 
-NpyRows::NpyRows(const std::filesystem::path& file, std::size_t rows, std::size_t columns)
-    : file_(file), missing_(rows * columns) {
+NpyRows::NpyRows(AtomicFile& file, std::size_t rows, std::size_t columns) : file_(file), missing_(rows * columns) {
   file_.write(npy_header("f4", {rows, columns}));
 }
 
@@ -58,9 +53,6 @@ void NpyRows::add(std::span<const float> values) {
   missing_ -= values.size();
 }
 
-void NpyRows::commit() {
-  CLERESTORY_ASSERT(missing_, ==, std::size_t{0});
-  file_.commit();
-}
+void NpyRows::end() const { CLERESTORY_ASSERT(missing_, ==, std::size_t{0}); }
 
 }  // namespace clerestory

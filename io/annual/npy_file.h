@@ -2,7 +2,6 @@
 // Arrays as NumPy's .npy files hold them.
 
 #include <cstddef>
-#include <filesystem>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -15,22 +14,22 @@ namespace clerestory {
 /// Source: "NEP 1: a simple file format for NumPy arrays", version 1.0.
 std::string npy_header(const char* type, std::initializer_list<std::size_t> shape);
 
-/// A whole array.
-void write_npy(const std::filesystem::path& file, std::span<const int> values);
+/// A whole array, into a file that the caller commits.
+void write_npy(AtomicFile& file, std::span<const int> values);
 /// values  rows of `columns`.
-void write_npy(const std::filesystem::path& file, std::span<const double> values, std::size_t columns);
+void write_npy(AtomicFile& file, std::span<const double> values, std::size_t columns);
 
-/// An array of floats that comes in blocks of rows.
+/// An array of floats that comes in blocks of rows, into a file that outlives this and that the caller commits.
 class NpyRows {
  public:
-  NpyRows(const std::filesystem::path& file, std::size_t rows, std::size_t columns);
+  NpyRows(AtomicFile& file, std::size_t rows, std::size_t columns);
   /// The next rows, one after the other.
   void add(std::span<const float> values);
   /// All rows were given.
-  void commit();
+  void end() const;
 
  private:
-  AtomicFile file_;
+  AtomicFile& file_;
   std::size_t missing_;  ///< numbers
 };
 

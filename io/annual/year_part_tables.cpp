@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char *kPlace = "place", *kPoints = "hours_of_points", *kSensors = "hours_of_sensors";
+constexpr double kMostNumber = std::numeric_limits<double>::max(), kLeastWeight = std::numeric_limits<double>::min();
 constexpr int kColumns = 14 + static_cast<int>(kMostThresholds);
 
 [[noreturn]] void refuse(const WrittenResult& result, const std::string& why) {
@@ -85,7 +86,6 @@ Json json_of(const YearPart& part) {
   for (const FileOfRun& file : part.files) files.push_back({{"name", file.name}, {"digest", file.digest}});
   return {{"parts", part.parts},
           {"files", files},
-          {"scene", f.scene},
           {"weather", f.weather},
           {"city", f.city},
           {"place", {f.latitude_deg, f.longitude_deg, f.timezone}},
@@ -106,7 +106,6 @@ void read_facts(const Json& json, YearPart& part) {
   part.parts = json.at("parts").get<std::size_t>();
   for (const Json& file : json.at("files"))
     part.files.push_back({file.at("name").get<std::string>(), file.at("digest").get<std::string>()});
-  f.scene = json.at("scene").get<std::string>();
   f.weather = json.at("weather").get<std::string>();
   f.city = json.at("city").get<std::string>();
   f.latitude_deg = json.at("place").at(0).get<double>();
@@ -140,6 +139,17 @@ class Tables {
       refuse(result_, text("its table '", name, "' has another size than it has to have"));
     return value;
   }
+  /// The same, each of [least, most].
+  const std::vector<double>& within(double least, double most, const char* name, int components,
+                                    std::optional<std::size_t> rows = {}) const {
+    const std::vector<double>& all = numbers(name, components, rows);
+    for (const double x : all) require_within(least, most, name, x);
+    return all;
+  }
+  void require_within(double least, double most, const char* name, double x) const {
+    if (!(x >= least && x <= most))
+      refuse(result_, text("its table '", name, "' has the value ", x, ", outside [", least, ", ", most, "]"));
+  }
   std::vector<std::uint32_t> indices(const char* name, std::size_t limit, std::optional<std::size_t> rows = {}) const {
     std::vector<std::uint32_t> all;
     for (const double x : numbers(name, 1, rows)) all.push_back(index(name, x, limit));
@@ -152,7 +162,7 @@ class Tables {
   }
   std::vector<Vec3> vectors(const char* name, std::optional<std::size_t> rows = {}) const {
     std::vector<Vec3> all;
-    const std::vector<double>& x = numbers(name, 3, rows);
+    const std::vector<double>& x = within(-kMostNumber, kMostNumber, name, 3, rows);
     for (std::size_t i = 0; i < x.size(); i += 3) all.push_back({x[i], x[i + 1], x[i + 2]});
     return all;
   }
@@ -162,10 +172,12 @@ class Tables {
     const double* next = x.data();
     for (PointYear& year : all)
       for_each_column(year, [&]<class Number>(Number& to) {
-        if constexpr (std::is_same_v<Number, double>)
+        if constexpr (std::is_same_v<Number, double>) {
+          require_within(0, kMostNumber, name, *next);
           to = *next++;
-        else
+        } else {
           to = static_cast<Number>(index(name, *next++, kHoursOfYear + 1));
+        }
       });
     return all;
   }
@@ -178,6 +190,7 @@ class Tables {
       if (area.points > (x.size() - next) / 2) refuse(result_, text("its table '", name, "' is cut short"));
       for (std::size_t i = 0; i < area.points; ++i, next += 2) {
         to.points.push_back(index(name, x[next], limit));
+        require_within(kLeastWeight, kMostNumber, name, x[next + 1]);
         to.weight.push_back(x[next + 1]);
       }
     }
@@ -196,13 +209,13 @@ void read_scattering(const Tables& tables, const WrittenResult& result, YearPart
   part.position = tables.vectors("position", P);
   part.patch_of_point = tables.indices("patch_of_point", N, P);
   part.rho.channels = part.tau.channels = channels;
-  part.rho.value = tables.numbers("rho", channels, N);
+  part.rho.value = tables.within(0, 1, "rho", channels, N);
   if (!result.year_tables.contains("tau")) return;
-  part.tau.value = tables.numbers("tau", channels, N);
+  part.tau.value = tables.within(0, 1, "tau", channels, N);
   part.behind_patch = tables.indices("behind_patch", N);
   const std::size_t B = part.behind_patch.size();
   part.behind_begin = tables.indices("behind_begin", B + 1, N + 1);
-  part.behind_share = tables.numbers("behind_share", 1, B);
+  part.behind_share = tables.within(0, kMostNumber, "behind_share", 1, B);
   if (!std::ranges::is_sorted(part.behind_begin) || part.behind_begin.back() != B)
     refuse(result, "its table 'behind_begin' does not fit the others");
 }
@@ -240,8 +253,12 @@ YearPart year_part_of(const WrittenResult& result) {
     refuse(result, quotable(error.what(), 100));
   }
   const Tables tables(result);
-  if (part.facts.occupied_hours < 1 || part.more_thresholds.size() > kMostThresholds || !(part.facts.threshold > 0))
+  const auto is_illuminance = [](double lux) { return lux > 0 && lux <= kMostNumber; };
+  if (part.facts.occupied_hours < 1 || part.facts.occupied_hours > static_cast<int>(kHoursOfYear) ||
+      part.more_thresholds.size() > kMostThresholds || !is_illuminance(part.facts.threshold) ||
+      !std::ranges::all_of(part.more_thresholds, is_illuminance))
     refuse(result, "its hours and thresholds");
+  if (part.parts > kMostParts) refuse(result, text("it is of ", part.parts, " parts, and the most are ", kMostParts));
   constexpr auto kAny = std::numeric_limits<std::uint32_t>::max();
   const std::vector<double>& place = tables.numbers(kPlace, 1, 3);
   part.part = tables.index(kPlace, place[0], kAny);
@@ -259,6 +276,13 @@ YearPart year_part_of(const WrittenResult& result) {
       part.first_sensor + part.of_sensors.size() > part.sensors.size())
     refuse(result, "it has more points than there are");
   return part;
+}
+
+void require_whole_year(const WrittenResult& result) {
+  if (result.year_part.empty()) return;
+  const YearPart part = year_part_of(result);
+  throw InputError(text(result.file, ": is part ", part.part, " of ", part.parts,
+                        " of a year; merge it first: clerestory merge PART.vtp... -o OUT.vtp"));
 }
 
 bool is_of_one_part(const std::string& table) { return table == kPlace || table == kPoints || table == kSensors; }

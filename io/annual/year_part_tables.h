@@ -13,6 +13,9 @@ void add_year_part(const YearPart& part, WrittenResult& result);
 /// throws  InputError when the result is no part, or its numbers do not fit it.
 YearPart year_part_of(const WrittenResult& result);
 
+/// throws  InputError that says which part, when the result is one: its arrays are whole only when it is merged.
+void require_whole_year(const WrittenResult& result);
+
 /// Whether that table has what differs from part to part.
 bool is_of_one_part(const std::string& table);
 

@@ -5,9 +5,8 @@
 //   layers-head    JSON: colours from the least to the most
 //   plan-N-head    JSON: columns and rows of the lattice, range of the colours, target; name and number of the set of
 //                  sensors, none for a floor
-//   plan-N-light   float32 [lx], layer by layer, of the lattice's places row by row, not a number where there is none;
-//   or of
-//                  the dots
+//   plan-N-light   float32 [lx], layer by layer: of the lattice's places row by row, not a number where there is
+//                  none; or of the dots
 //
 // Light is packed like that of io/page/solution_data.h.
 

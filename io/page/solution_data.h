@@ -8,9 +8,8 @@
 //   solution-corners    uint32 three a triangle, each as its distance back from the next new point
 //   solution-runs       uint32 count, room, surface, material of the triangles that follow one another
 //   solution-panes      float32 nine a triangle of glass
-//   solution-layers     uint16 a point for each layer after the other, between the head's `layers`; empty: there are
-//   none solution-shares     uint8 as these: share of the radiosity in 255ths; empty where it is that of the
-//   illuminance
+//   solution-layers     uint16 a point, layer by layer, between the head's `layers`; empty: there are none
+//   solution-shares     uint8 as these: share of the radiosity in 255ths; empty: it is that of the illuminance
 //
 // All but the head are zlib streams in base 64, of numbers whose bytes of equal weight lie together.
 

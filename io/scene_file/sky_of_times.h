@@ -16,8 +16,7 @@ namespace clerestory {
 ///
 /// times   at least one.
 /// throws  InputError as read_sky_entries(), naming the time; when nothing of sky and sun goes by the time; and when
-/// all
-///         of it is night.
+///         all of it is night.
 void read_sky_of_times(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
                        std::span<const Moment> times, ChannelCount& channels, Scene& scene);
 

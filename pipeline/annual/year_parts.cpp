@@ -90,14 +90,21 @@ std::string difference(const std::vector<FileOfRun>& a, const std::vector<FileOf
   return a.size() != b.size() ? "they read another number of files" : "";
 }
 
-/// The same of settings and results.
+/// The same of settings and results, but for the name that the input was called by: "./a.json" is "a.json".
 std::string difference(const RunReport& a, const RunReport& b) {
   const std::vector<Figure> as = repeatable_figures(a), bs = repeatable_figures(b);
   for (std::size_t i = 0; i < std::min(as.size(), bs.size()); ++i) {
+    if (as[i].name == "input" && bs[i].name == "input") continue;
     if (as[i].name != bs[i].name) return "the one has " + as[i].name + ", the other " + bs[i].name;
     if (value_of(as[i]) != value_of(bs[i])) return as[i].name + " is " + value_of(as[i]) + " and " + value_of(bs[i]);
   }
   return "";
+}
+
+/// The report without the name of the input, and warnings, which begin with it.
+std::string nameless(RunReport report) {
+  report.input.clear(), report.warnings.clear();
+  return repeatable_text(report);
 }
 
 /// The same of all else. Computers of different kinds may differ in the last digit of a number.
@@ -107,7 +114,7 @@ bool is_same_mesh(const WrittenResult& a, const WrittenResult& b) {
     return is_of_one_part(named.first) || (other != b.year_tables.end() && other->second.value == named.second.value);
   });
   return same_tables && a.triangles == b.triangles && a.material == b.material && a.surface == b.surface &&
-         a.year_part == b.year_part && a.report == b.report;
+         a.year_part == b.year_part;
 }
 
 void put(const std::vector<PointYear>& from, std::size_t at, std::vector<PointYear>& to, std::size_t& known) {
@@ -174,6 +181,7 @@ void YearMerge::require_same_run(const WrittenResult& result, const YearPart& pa
   if (what.empty() && facts_.parts != part.parts)
     what = text("the one is of ", facts_.parts, " parts, the other of ", part.parts);
   if (what.empty() && !is_same_mesh(first_, result)) what = "their elements, rooms or sensors differ";
+  if (what.empty() && nameless(here) != nameless(there)) what = "what their reports tell differs";
   if (!what.empty())
     throw InputError(text(first_.file, " and ", result.file, ": are parts of different runs: ", what,
                           "; run all parts with the same files and options, on computers of one kind."));
@@ -228,6 +236,7 @@ MergedYear YearMerge::finish() {
   merged.annual = facts_.facts;
   tell_areas(year, merged.annual);
   merged.report = run_report_of(first_.report, first_.file);
+  merged.annual.scene = merged.report.input;
   merged.sensors = facts_.sensors;
   return merged;
 }

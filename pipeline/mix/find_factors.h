@@ -14,7 +14,7 @@ namespace clerestory {
 /// What a set of sensors should have.
 struct GridTarget {
   std::string grid;         ///< name of the set
-  double lux = 0;           ///< > 0
+  double lux = 0;           ///< kLeastTarget or more
   bool of_minimum = false;  ///< the least of its sensors, instead of their mean
 };
 

@@ -27,16 +27,18 @@ void scale(std::vector<double>& values, double factor) {
   for (double& x : values) x *= factor;
 }
 
-/// Scales the array of each layer in place. returns their sum.
+/// Scales the array of each layer in place. returns their sum; nothing, and all is as it was, where a layer has none.
 std::vector<double> scaled_sum(Arrays& arrays, const char* name, const std::vector<ShownLayer>& layers,
                                std::span<const double> factors) {
+  if (!std::ranges::all_of(layers,
+                           [&](const ShownLayer& layer) { return arrays.contains(of_layer(name, layer.name)); }))
+    return {};
   std::vector<double> sum;
   for (std::size_t s = 0; s < layers.size(); ++s) {
-    const auto at = arrays.find(of_layer(name, layers[s].name));
-    if (at == arrays.end()) return {};
-    scale(at->second.value, factors[s]);
-    sum.resize(at->second.value.size());
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += at->second.value[k];
+    std::vector<float>& own = arrays.at(of_layer(name, layers[s].name)).value;
+    scale(own, factors[s]);
+    sum.resize(own.size());
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += own[k];
   }
   return sum;
 }

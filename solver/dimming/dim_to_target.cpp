@@ -80,12 +80,14 @@ DimLevels dim_to_target(std::span<const double> flux_lm, std::span<const DimTarg
     return found;
   }
   const auto solved = [&](double u) { return least_cost(programme_of(flux_lm, targets, u, most)); };
-  if (const auto level = solved(uniformity.value_or(0))) {
+  const double wanted = uniformity.value_or(0);
+  double possible = uniformity_of(targets, found.level);
+  if (const auto level = solved(wanted)) {
     found.level = *level;
-  } else {
+  } else if (possible < wanted) {  // else all at `most` do it: no solution is then a matter of rounding
     // The largest that there is a solution for, by halves: what is at least u even is so for all less.
     found.outcome = DimLevels::Outcome::too_uneven;
-    double possible = 0, impossible = uniformity.value_or(0);
+    double impossible = wanted;
     while (impossible - possible > 1e-4) {
       const double u = (possible + impossible) / 2;
       if (const auto levels_of_u = solved(u)) {

@@ -7,9 +7,11 @@
 
 namespace clerestory {
 
+inline constexpr double kLeastTarget = 0.01;  ///< [lx]; far below it a programme has numbers of very different size
+
 /// Light that the sensors of a grid should have: their mean, or the least of them.
 struct DimTarget {
-  double lux = 0;  ///< > 0
+  double lux = 0;  ///< kLeastTarget or more
   bool of_minimum = false;
   std::vector<double> given;                  ///< S, from what is not dimmed [lx], >= 0
   std::vector<std::vector<double>> of_layer;  ///< D x S, from each layer at level 1 [lx], >= 0

@@ -53,14 +53,6 @@ void add(Count& sum, int hours) {
 double percent(double hours, double of) { return 100 * hours / of; }
 double occupied_percent(double hours, const YearRules& rules) { return percent(hours, rules.occupied_hours); }
 
-/// "300", "437.5"
-std::string plain(double lux) {
-  std::string digits = std::to_string(lux);
-  digits.erase(digits.find_last_not_of('0') + 1);
-  if (digits.back() == '.') digits.pop_back();
-  return digits;
-}
-
 /// Share [%] of the area of points that have it.
 template <typename Has>
 double area_share(std::span<const PointYear> points, std::span<const double> weight, double area, const Has& has) {
@@ -132,11 +124,18 @@ PointYear figures_of(std::span<const float> total, std::span<const float> direct
   return year;
 }
 
+std::string threshold_name(double lux) {
+  std::string digits = std::to_string(lux);
+  digits.erase(digits.find_last_not_of('0') + 1);
+  if (digits.back() == '.') digits.pop_back();
+  return digits;
+}
+
 std::vector<YearFigure> year_figures(const YearRules& rules) {
   using P = const PointYear&;
   using R = const YearRules&;
   using I = std::size_t;
-  const std::string T = plain(rules.threshold);
+  const std::string T = threshold_name(rules.threshold);
   std::vector<YearFigure> figures = {
       {"DA_" + T, "%", [](P p, R r, I) { return occupied_percent(p.DA, r); }},
       {"cDA_" + T, "%", [](P p, R r, I) { return occupied_percent(p.cDA, r); }},
@@ -146,11 +145,11 @@ std::vector<YearFigure> year_figures(const YearRules& rules) {
       {"ASE_hours", "h", [](P p, R, I) { return double{1} * p.ASE; }},
       {"mean_illuminance", "lx", [](P p, R r, I) { return p.lux_hours / r.occupied_hours; }}};
   for (std::size_t k = 0; k < kEn17037Lux.size(); ++k)
-    figures.push_back({"EN17037_" + plain(kEn17037Lux[k]), "%",
+    figures.push_back({"EN17037_" + threshold_name(kEn17037Lux[k]), "%",
                        [](P p, R, I i) { return percent(p.EN17037[i], double{kDaylightHours}); }, k});
   for (std::size_t k = 0; k < rules.more_thresholds.size(); ++k)
-    figures.push_back(
-        {"hours_" + plain(rules.more_thresholds[k]), "h", [](P p, R, I i) { return double{1} * p.at_least[i]; }, k});
+    figures.push_back({"hours_" + threshold_name(rules.more_thresholds[k]), "h",
+                       [](P p, R, I i) { return double{1} * p.at_least[i]; }, k});
   return figures;
 }
 

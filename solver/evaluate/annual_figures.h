@@ -35,6 +35,9 @@ YearRules year_rules(std::span<const int> hours, std::span<const double> diffuse
 PointYear figures_of(std::span<const float> total, std::span<const float> direct, const YearRules& rules,
                      const YearError& error = {});
 
+/// A threshold in the name of a figure, in lux to six decimals: "300", "437.5".
+std::string threshold_name(double lux);
+
 /// A figure as files have it.
 struct YearFigure {
   std::string name;  ///< "DA_300"

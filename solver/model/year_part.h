@@ -13,6 +13,8 @@
 
 namespace clerestory {
 
+inline constexpr std::size_t kMostParts = 1'000'000;  ///< of a year
+
 /// A file that a run read.
 struct FileOfRun {
   std::string name;    ///< the last part of its path
@@ -27,8 +29,8 @@ struct AreaPoints {
 
 /// All but the place of the part and the hours of its points is the same in all parts of one run.
 struct YearPart {
-  std::size_t part = 1, parts = 1;  ///< which of how many, 1 <= part <= parts
-  AnnualReport facts;               ///< rooms and grids without figures
+  std::size_t part = 1, parts = 1;  ///< which of how many, 1 <= part <= parts <= kMostParts
+  AnnualReport facts;               ///< rooms and grids without figures; the scene is what the report calls it
   std::vector<double> more_thresholds;
   std::vector<FileOfRun> files;
   std::vector<AreaPoints> rooms, grids;  ///< those of `facts`, in that order

@@ -121,8 +121,44 @@ TEST_F(Annual, RefusesWhatItCannotUse) {
   folder.write("pane.json", R"({ "geometry": [{ "file": "ground.obj" }], "materials": {
       "*": { "type": "glass", "transmittance": 0.3, "blinds": { "transmittance": 0.5, "group": "a" } } } })");
   EXPECT_NE(refused("pane.json", {}).find("is more than the pane passes without blinds, 0.3"), std::string::npos);
-  for (const Words& wrong : {Words{"--sky-parts", "146"}, Words{"--threshold", "0"}, Words{"--threshold", "300,-5"}})
-    EXPECT_EQ(annual("ground.json", wrong).exit_code, 2) << wrong[0] << ' ' << wrong[1];
+  EXPECT_NE(refused("ground.json", {"--sensors-out", folder / "nowhere/s.csv"}).find("nowhere"), std::string::npos);
+  EXPECT_NE(refused("ground.obj", {"--sensors-out", folder / "s.csv"}).find("there are no sensors to write"),
+            std::string::npos);
+  std::string every_hour;
+  for (int h = 0; h < 8760; ++h) every_hour += "1\n";
+  const std::string schedule = folder.write("schedule.csv", every_hour);
+  EXPECT_NE(refused("ground.json", {"--schedule", schedule, "--sensors-out", schedule}).find("--schedule"),
+            std::string::npos);
+  EXPECT_EQ(read_text(schedule), every_hour);
+}
+
+TEST_F(Annual, WhatIsNoChoiceOrNoThresholdIsAWrongUsage) {
+  const std::pair<Words, const char*> wrongs[] = {{{"--sky-parts", "146"}, "146 is not one of"},
+                                                  {{"--threshold", "0"}, "'0' is no illuminance of [1, 1000000] lx"},
+                                                  {{"--threshold", "300,-5"}, "'-5' is no illuminance"},
+                                                  {{"--threshold", "nan"}, "'nan' is no illuminance"},
+                                                  {{"--threshold", "1e-50"}, "'1e-50' is no illuminance"},
+                                                  {{"--threshold", "500,300,300"}, "has 300 lx twice"},
+                                                  {{"--threshold", "300,300.0000001"}, "has 300 lx twice"}};
+  for (const auto& [words, message] : wrongs) {
+    const ProgramRun run = annual("ground.json", words);
+    EXPECT_EQ(run.exit_code, 2) << words[1];
+    EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
+  }
+}
+
+TEST_F(Annual, SettingsOfTheSceneThatAYearDoesNotFollowAreSaidAndLeftOut) {
+  folder.write("settings.json", R"({ "geometry": [{ "file": "ground.obj" }],
+      "solver": { "method": "progressive", "target_error": 0.02, "time_limit": 100, "memory_limit": "1GiB", "seed": 5 } })");
+  const ProgramRun run = annual("settings.json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const WrittenResult result = read_result(folder / "year.vtp");
+  EXPECT_EQ(result.texts.at("settings.method").front(), "hierarchical");
+  EXPECT_EQ(result.figures.at("settings.seed"), 5);
+  for (const std::string setting : {"method", "target_error", "time_limit", "memory_limit"}) {
+    EXPECT_NE(run.err.find("solver." + setting), std::string::npos) << run.err;
+    EXPECT_FALSE(result.figures.contains("settings." + setting));
+  }
 }
 
 TEST_F(Annual, ResultIsDrawnAndNoPageTakesItForOneHour) {

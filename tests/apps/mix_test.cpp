@@ -182,7 +182,7 @@ TEST_F(Mix, WhatCannotBeIsRefusedWithOneMessage) {
          "the best that left, right, panel can");
   expect(mix("layered", "out", {"--target", "desk=10", "--set", "lift=1"}), 3, "did you mean 'left'?");
   expect(mix("plain", "out", {"--target", "desk=10"}), 3, "solve the scene again with --layers");
-  for (const char* bad : {"desk=0", "desk=nan", "desk", "=5", "desk=5:max"})
+  for (const char* bad : {"desk=0", "desk=1e-300", "desk=nan", "desk", "=5", "desk=5:max"})
     expect(mix("layered", "out", {"--target", bad}), 2, "GRID=LUX");
   expect(mix("layered", "out", {"--target", "desk=10", "--uniformity", "1.5"}), 2, "outside (0, 1]");
   expect(mix("layered", "out", {"--target", "desk=10", "--max", "0"}), 2, "outside (0, 1000]");

@@ -110,6 +110,27 @@ TEST_F(YearInParts, OneOrTwoPartsAreTheWholeYearToo) {
   expect_whole("of_two");
 }
 
+TEST_F(YearInParts, MergesPartsWhoseSceneWasNamedInAnotherWay) {
+  Words words = annual("other_name.vtp", {"--part", "2/2"});
+  words[1] = in_folder("./room.json");
+  ASSERT_EQ(run_program(words).exit_code, 0);
+  const ProgramRun run = merge({part(1, 2), "other_name.vtp"}, "of_two_names.vtp");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  expect_whole("of_two_names");
+}
+
+TEST_F(YearInParts, APartIsNoResultForOtherCommands) {
+  const std::pair<const char*, const char*> outputs[] = {{"report", "a.html"}, {"bake", "a.ply"}, {"render", "a.png"}};
+  for (const auto& [command, output] : outputs) {
+    const ProgramRun run = run_program({command, in_folder(part(2, 3)), "-o", in_folder(output)});
+    EXPECT_EQ(run.exit_code, 3) << command;
+    EXPECT_NE(run.err.find("is part 2 of 3 of a year; merge it first"), run.err.npos) << run.err;
+  }
+  const ProgramRun mixed = run_program({"mix", in_folder(part(2, 3)), "-o", in_folder("mixed.vtp"), "--set", "sky=1"});
+  EXPECT_EQ(mixed.exit_code, 3);
+  EXPECT_NE(mixed.err.find("is part 2 of 3 of a year"), mixed.err.npos) << mixed.err;
+}
+
 TEST_F(YearInParts, APartHasNoFigureWhereItHasNoPoint) {
   const WrittenResult here = read_result(in_folder(part(2, 3))), all = read_result(in_folder(whole()));
   for (const char* array : {"DA_300", "illuminance"}) {

@@ -54,6 +54,13 @@ TEST(Schedule, OfAFileHasTheHoursFromAHalfOn) {
   EXPECT_EQ(schedule.occupied[4000], 1);
 }
 
+TEST(Schedule, HoursAreHoursWhateverFilesThereAre) {
+  EXPECT_TRUE(is_hours_of_day("8-18"));
+  EXPECT_TRUE(is_hours_of_day("20-6"));
+  EXPECT_FALSE(is_hours_of_day("./8-18"));
+  EXPECT_FALSE(is_hours_of_day("office.csv"));
+}
+
 TEST(Schedule, WithoutHoursOrOfNoUseIsRefused) {
   const TempFolder folder;
   EXPECT_EQ(refused("8-8"), "--schedule '8-8' has no hours; write the first and the end of the last, as 8-18");

@@ -7,7 +7,7 @@
 namespace clerestory {
 
 /// Golden, Colorado: 500 W/m2 of the sun and 100 of the sky from 10 to 14 h each day, 1,460 h, and dark else. Hours
-/// that have no light take no time. to the reader.
+/// that have no light take no time.
 inline std::string even_weather() {
   std::ostringstream out;
   out << "LOCATION,Golden,CO,USA,made up,0,39.742476,-105.1786,-7.0,1830.0\nDESIGN CONDITIONS,0\n"

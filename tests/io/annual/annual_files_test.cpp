@@ -139,7 +139,8 @@ TEST(HourSeries, AsAFolderHasOneArrayAFile) {
   const TempFolder folder;
   const auto series = make_hour_series(folder / "hours", kHours, {{"sensors", kPoints}});
   fill(*series);
-  EXPECT_FALSE(fs::exists(folder / "hours/sensors/total.npy")) << "before it is whole";
+  for (const char* file : {"hour.npy", "sensors/position.npy", "sensors/normal.npy", "sensors/total.npy"})
+    EXPECT_FALSE(fs::exists(folder / (std::string("hours/") + file))) << file << " before all is whole";
   series->commit();
   const Npy total(folder / "hours/sensors/total.npy");
   EXPECT_NE(total.header.find("(3, 4)"), std::string::npos) << total.header;

@@ -2,6 +2,8 @@
 
 #include "io/annual/year_part_tables.h"
 
+#include <cmath>
+#include <cstring>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -68,6 +70,13 @@ TEST(YearPartTables, ReadBackTheSameNumbers) {
 
 TEST(YearPartTables, OfAResultThatIsNoPartAreRefused) { EXPECT_THROW(year_part_of(one_quad()), InputError); }
 
+TEST(YearPartTables, APartIsNoWholeYear) {
+  WrittenResult result = one_quad();
+  EXPECT_NO_THROW(require_whole_year(result));
+  add_year_part(middle_part(), result);
+  EXPECT_THROW(require_whole_year(result), InputError);
+}
+
 TEST(YearPartTables, ThatDoNotFitTogetherAreRefused) {
   const std::pair<const char*, std::function<void(WrittenResult&)>> damages[] = {
       {"no table", [](WrittenResult& r) { r.year_tables.erase("rho"); }},
@@ -77,6 +86,14 @@ TEST(YearPartTables, ThatDoNotFitTogetherAreRefused) {
        }},
       {"cut short", [](WrittenResult& r) { r.year_tables["position"].value.resize(9); }},
       {"a point beyond the last", [](WrittenResult& r) { r.year_tables["rooms"].value[0] = 4; }},
+      {"a point that stands for nothing", [](WrittenResult& r) { r.year_tables["rooms"].value[1] = 0; }},
+      {"a point that stands for no number", [](WrittenResult& r) { r.year_tables["grids"].value[1] = std::nan(""); }},
+      {"a reflectance above 1", [](WrittenResult& r) { r.year_tables["rho"].value[0] = 1.5; }},
+      {"endless light", [](WrittenResult& r) { r.year_tables["hours_of_points"].value.back() = HUGE_VAL; }},
+      {"a part of a billion",
+       [](WrittenResult& r) {
+         r.year_part.replace(r.year_part.find("\"parts\":3"), std::strlen("\"parts\":3"), "\"parts\":1000000000");
+       }},
       {"half a point", [](WrittenResult& r) { r.year_tables["rooms"].value[0] = 0.5; }},
       {"fewer points than the room has", [](WrittenResult& r) { r.year_tables["rooms"].value.resize(4); }},
       {"more hours than a year has", [](WrittenResult& r) { r.year_tables["hours_of_points"].value[0] = 8761; }},

@@ -82,6 +82,14 @@ TEST(MixLayers, WhereSurfacesGlowTheirOwnRadiosityIsDimmedToo) {
                     static_cast<float>(2.5 + 0.5 * (0.25 * (1 + r.points[i].x) + 2)));
 }
 
+TEST(MixLayers, RadiosityThatOnlySomeLayersHaveIsLeftAsItIs) {
+  WrittenResult r = lamp_and_sky();
+  const std::vector<float> before = r.of_points["radiosity:lamp"].value = r.of_points["radiosity"].value;
+  mix_layers(r, std::vector<double>{0.5, 2});
+  EXPECT_EQ(r.of_points["radiosity:lamp"].value, before);
+  EXPECT_FLOAT_EQ(r.of_points["radiosity"].value[0], 0.5f * r.of_points["irradiance"].value[0]) << "B = rho E";
+}
+
 TEST(MixLayers, DaylightFactorsStayOnlyWhereTheSkyIsTheOnlyLight) {
   WrittenResult off = lamp_and_sky(), dimmed = lamp_and_sky(), same = lamp_and_sky();
   mix_layers(off, std::vector<double>{0, 0.5});

@@ -116,6 +116,14 @@ TEST(DimToTarget, TheBestUniformityIsToldWhereItIsNotEnough) {
   EXPECT_NEAR(found.level[1], 1, 1e-3);
 }
 
+TEST(DimToTarget, TheLeastTargetUnderTheBrightestLampIsReached) {
+  // A level of 1e-7 of the first lamp, which is as small as what Clp may be off by.
+  const std::vector<DimTarget> targets = {{.lux = kLeastTarget, .given = {0}, .of_layer = {{1e5}, {1}}}};
+  const DimLevels found = dim_to_target(std::vector{1e6, 1000.0}, targets);
+  EXPECT_EQ(found.outcome, Outcome::reached);
+  EXPECT_GE(dimmed(targets[0], found.level)[0], kLeastTarget * (1 - kTolerance));
+}
+
 TEST(DimToTarget, TenThousandSensorsOfTwentyLayersAreNoLongWait) {
   // Layer k has its spot at k; the answer obeys what was asked for.
   std::vector<DimTarget> targets = {{.lux = 300, .given = std::vector(10'000, 20.0), .of_layer = {}}};

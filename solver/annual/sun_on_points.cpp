@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "solver/illumination/image_beams.h"
 #include "solver/lights/sun.h"
@@ -14,18 +15,35 @@
 namespace clerestory {
 namespace {
 
-/// What of the sun's image comes to a point over mirrors and panes, by one ray.
-double over_mirrors(const RayScene& rays, const ReceivingPoint& at, const PlacedSun& image) {
-  const double cosine = dot(at.n, image.direction);
-  if (!(cosine > 0) || !may_reach(rays, image, {&at.p, 1})) return 0;
-  return cosine *
-         luminous_mean(rays.transmittance_by_mirrors(at.p, at.p + image.direction * (4 * rays.diameter()), image.way));
+/// What of the sun's image comes to a point over a way of mirrors and panes, over what a plane that faces it has: by
+/// the pilots, and by more rays where these disagree.
+double over_way(const RayScene& rays, const ReceivingPoint& at, const SunOfHour& sun, const MirrorWay& way) {
+  const auto image_of = [&](Vec3 d) {
+    for (std::size_t k = 0; k < way.count; ++k) d = rays.mirrors()[way.plane[k]].image_of_direction(d);
+    return d;
+  };
+  if (!may_reach(rays, {Sun{image_of(sun.direction), Spectrum(1.0)}, way}, {&at.p, 1})) return 0;
+  std::size_t lit = 0;
+  const auto mean_of = [&](const std::vector<Vec3>& to_disc) {
+    double sum = 0;
+    for (const Vec3& to_sun : to_disc) {
+      const Vec3 d = image_of(to_sun);
+      const double cosine = dot(at.n, d);
+      if (!(cosine > 0)) continue;
+      const double passes = luminous_mean(rays.transmittance_by_mirrors(at.p, at.p + d * (4 * rays.diameter()), way));
+      sum += cosine * passes;
+      lit += passes > 0;
+    }
+    return sum / static_cast<double>(to_disc.size());
+  };
+  const double share = mean_of(sun.pilots);
+  return lit == 0 || lit == sun.pilots.size() || sun.more.empty() ? share : mean_of(sun.more);
 }
 
 }  // namespace
 
-SunOfHour::SunOfHour(const Vec3& to_sun, std::span<const MirrorWay> over, std::size_t rays, std::uint64_t key)
-    : direction(to_sun), ways(over) {
+SunOfHour::SunOfHour(const Vec3& to_sun, std::vector<MirrorWay> over, std::size_t rays, std::uint64_t key)
+    : direction(to_sun), ways(std::move(over)) {
   const Vec3 aside = normalized(std::abs(to_sun.z) < 0.9999 ? cross({0, 0, 1}, to_sun) : Vec3{1, 0, 0});
   const Vec3 above = cross(to_sun, aside);
   const double radius = std::tan(kSunDiameterDeg / 2 * std::numbers::pi / 180);
@@ -73,12 +91,7 @@ void sun_on_points(const RayScene& rays, std::span<const ReceivingPoint> points,
         shadows.trace();
         share = sum[i] / static_cast<double>(suns[h].more.size());
       }
-      for (const MirrorWay& way : suns[h].ways) {
-        PlacedSun image{Sun{suns[h].direction, Spectrum(1.0)}, way};
-        for (std::size_t k = 0; k < way.count; ++k)
-          image.direction = rays.mirrors()[way.plane[k]].image_of_direction(image.direction);
-        share += over_mirrors(rays, points[i], image);
-      }
+      for (const MirrorWay& way : suns[h].ways) share += over_way(rays, points[i], suns[h], way);
       out[i * suns.size() + h] = static_cast<float>(share);
     }
   }

@@ -12,14 +12,14 @@ namespace clerestory {
 
 /// The sun in an hour, and where rays to it go.
 struct SunOfHour {
-  Vec3 direction;                     ///< unit, scene's frame
-  std::span<const MirrorWay> ways{};  ///< over which mirrors and panes it may come, too
-  std::vector<Vec3> pilots, more;     ///< unit, to points of its disc: `more` where the pilots disagree
+  Vec3 direction;                  ///< unit, scene's frame
+  std::vector<MirrorWay> ways;     ///< over which mirrors and panes it may come, too
+  std::vector<Vec3> pilots, more;  ///< unit, to points of its disc: `more` where the pilots disagree
 
   /// Pilots stand at the disc's rim, above, below and on both sides: edges that are level or plumb never pass between
   /// them and the sky unseen, others where they cut off less than 9 % of the disc.
   /// key  of the hour. rays: of `more`; 0: pilots alone.
-  SunOfHour(const Vec3& to_sun, std::span<const MirrorWay> over, std::size_t rays, std::uint64_t key);
+  SunOfHour(const Vec3& to_sun, std::vector<MirrorWay> over, std::size_t rays, std::uint64_t key);
 };
 
 /// Illuminance at points over that of a plane which faces the sun, as a luminous mean [1]: share of the disc that is

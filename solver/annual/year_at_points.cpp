@@ -64,11 +64,15 @@ YearScene year_scene(const Illumination& light, const SkyParts& fine, const Refl
   YearScene scene{light, fine, reflected, year, {}, {}, {}, plan_reach, parts_around(fine)};
   for (std::size_t h = 0; h < hours.size(); ++h) {
     if (!(year.sun[h] > 0)) continue;
-    std::span<const MirrorWay> ways;
+    std::vector<MirrorWay> ways;  // of all nodes around it, each once
     const AmongNodes& among = year.of_sun[h];
-    const auto nearest = std::max_element(among.weight.begin(), among.weight.end()) - among.weight.begin();
-    if (!reflected.sun_ways.empty()) ways = reflected.sun_ways[among.node[static_cast<std::size_t>(nearest)]];
-    scene.suns.emplace_back(hours[h].sun, ways, sun_rays,
+    for (std::size_t k = 0; k < among.node.size() && !reflected.sun_ways.empty(); ++k)
+      for (const MirrorWay& way : reflected.sun_ways[among.node[k]])
+        if (among.weight[k] > 0 && std::ranges::none_of(ways, [&](const MirrorWay& w) {
+              return w.count == way.count && w.plane == way.plane;
+            }))
+          ways.push_back(way);
+    scene.suns.emplace_back(hours[h].sun, std::move(ways), sun_rays,
                             stream_key(seed, kSunOfHour, static_cast<std::uint64_t>(hours[h].hour)));
     scene.hour_of_sun.push_back(h);
     scene.part_of_sun.push_back(static_cast<std::uint32_t>(fine.part_of(hours[h].sun)));

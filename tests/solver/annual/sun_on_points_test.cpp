@@ -40,8 +40,8 @@ TEST(SunOnPoints, ComesThroughAWindowWithItsCosineAndWhatGlassLetsPass) {
   const std::vector<ReceivingPoint> points = {
       {{1, 1, 0}, {0, 0, 1}}, {{1, 1, 0.6}, {0, 0, 1}}, {{1, 1, 0.6}, {0, -1, 0}}, {{1, 1, 0.6}, {0, 1, 0}}};
   std::vector<SunOfHour> suns;
-  suns.emplace_back(from_south(55), std::span<const MirrorWay>{}, 16, 7);  // 1.43 m up on 1 m
-  suns.emplace_back(from_south(30), std::span<const MirrorWay>{}, 16, 8);  // 0.58 m
+  suns.emplace_back(from_south(55), std::vector<MirrorWay>{}, 16, 7);  // 1.43 m up on 1 m
+  suns.emplace_back(from_south(30), std::vector<MirrorWay>{}, 16, 8);  // 0.58 m
   const auto z = [&](std::size_t s) { return suns[s].direction.z; };
   for (const double pane : {1.0, 0.65}) {
     const std::vector<float> E = at_points(sheet_with_hole(pane), points, suns);
@@ -60,7 +60,7 @@ TEST(SunOnPoints, ComesThroughAWindowWithItsCosineAndWhatGlassLetsPass) {
 
 TEST(SunOnPoints, IsNotLookedForWhereItCannotCome) {
   std::vector<SunOfHour> suns;
-  suns.emplace_back(from_south(55), std::span<const MirrorWay>{}, 16, 7);
+  suns.emplace_back(from_south(55), std::vector<MirrorWay>{}, 16, 7);
   const std::vector<ReceivingPoint> points(2, {{1, 1, 0}, {0, 0, 1}});
   const std::vector<float> E = at_points(sheet_with_hole(1), points, suns, {false, true});
   EXPECT_EQ(E[0], 0);
@@ -76,7 +76,7 @@ TEST(SunOnPoints, HalfShadowIsTheShareOfTheDiscThatIsSeen) {
   PatchSet patches = sheet_with_hole(1);
   const double elevation = 20, radius = kSunDiameterDeg / 2 * kDegree;
   std::vector<SunOfHour> suns;
-  suns.emplace_back(from_south(elevation), std::span<const MirrorWay>{}, 256, 11);
+  suns.emplace_back(from_south(elevation), std::vector<MirrorWay>{}, 256, 11);
   std::vector<ReceivingPoint> points;
   std::vector<double> share;
   for (double t = -1.15; t < 1.2; t += 0.1) {
@@ -101,7 +101,7 @@ TEST(SunOnPoints, ASlantedEdgeIsNeverOffByMoreThanItsCap) {
   b.rectangle(sun * far - along * 5, along * 10, across * 5);
   const PatchSet patches = test::two_sided(b.build());
   std::vector<SunOfHour> suns;
-  suns.emplace_back(sun, std::span<const MirrorWay>{}, 256, 3);
+  suns.emplace_back(sun, std::vector<MirrorWay>{}, 256, 3);
   for (double t = -0.95; t < 1; t += 0.1) {
     // Moving the point by t radii moves the sun's middle as far past the edge.
     const std::vector<float> E = at_points(patches, {{across * (t * radius), sun}}, suns);

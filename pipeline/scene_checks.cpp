@@ -7,6 +7,7 @@
 
 #include "io/scene_file/nearest_name.h"
 #include "io/text.h"
+#include "pipeline/collect_around.h"
 #include "pipeline/wording.h"
 #include "solver/evaluate/buried_points.h"
 #include "solver/lights/beam.h"
@@ -203,6 +204,12 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
   const UnusedRules unused(scene);
   for (const std::string& name : scene.unused_materials)
     observer.warn(scene.file + ": materials '" + quotable(name) + "' " + unused.why(name));
+  const auto emits = [&](MaterialId m) { return scene.materials[m].emits(); };
+  if (daylight_reference(scene.lights) &&
+      (!scene.lights.luminaires.empty() || std::ranges::any_of(scene.polygons.material, emits)))
+    observer.warn(scene.file +
+                  ": daylight factors hold the light of the lamps, too; those of daylight alone are left where solve "
+                  "--layers and mix --set put the lamps at 0");
 }
 
 std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,

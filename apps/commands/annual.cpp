@@ -15,9 +15,8 @@
 #include "apps/solve_report.h"
 #include "apps/year_arguments.h"
 #include "apps/year_outputs.h"
+#include "apps/year_series.h"
 #include "io/annual/file_digest.h"
-#include "io/annual/honeybee_folder.h"
-#include "io/annual/hour_series.h"
 #include "io/annual/year_part_tables.h"
 #include "io/as_written.h"
 #include "io/formats/weather_year.h"
@@ -47,64 +46,6 @@ struct Arguments {
   YearFiles files;
   std::vector<double> thresholds;
   std::optional<std::string> sky_parts, part;
-};
-
-/// Series of the hours as they come, into the places that were asked for.
-class SeriesOutputs {
- public:
-  SeriesOutputs(const Arguments& arguments, const Scene& scene, const DaylightYear& year, Console& console)
-      : sensors_(all_sensor_points(scene.sensors)) {
-    std::vector<int> hours;
-    for (const DaylightHour& h : year.hours) hours.push_back(h.hour);
-    const std::vector<SeriesPoints> sets{{"sensors", sensors_}};
-    if (!arguments.hours.empty()) {
-      console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sets)) + " into " + arguments.hours);
-      hours_ = make_hour_series(arguments.hours, hours, sets);
-    }
-    if (!arguments.honeybee.empty()) {
-      std::vector<HoneybeeGrid> grids;
-      for (const SensorSet& set : scene.sensors) {
-        grids.push_back({set.name, set.points.size()});
-        ends_.push_back((ends_.empty() ? 0 : ends_.back()) + set.points.size());
-      }
-      honeybee_.emplace(arguments.honeybee, hours, std::move(grids));
-    }
-  }
-  bool any() const { return hours_ || honeybee_; }
-
-  void take(const YearSeries& s) {
-    if (!s.of_sensors) return;
-    if (hours_) hours_->add(0, s.total, s.direct);
-    const std::size_t H = s.total.size() / std::max<std::size_t>(s.end - s.begin, 1);
-    for (std::size_t begin = s.begin, end; begin < s.end && honeybee_; begin = end) {
-      const auto grid = static_cast<std::size_t>(std::ranges::upper_bound(ends_, begin) - ends_.begin());
-      end = std::min(s.end, ends_[grid]);
-      honeybee_->add(grid, 0, 0, s.total.subspan((begin - s.begin) * H, (end - begin) * H),
-                     s.direct.subspan((begin - s.begin) * H, (end - begin) * H));
-    }
-  }
-  void commit(const Scene& scene, const YearSolved& solved) {
-    if (hours_) hours_->commit();
-    if (!honeybee_) return;
-    std::vector<HoneybeeMetrics> metrics;
-    const std::vector<YearFigure> figures = year_figures(solved.rules);
-    std::size_t next = 0;
-    for (const SensorSet& set : scene.sensors) {
-      HoneybeeMetrics& m = metrics.emplace_back();
-      for (std::size_t k = 0; k < set.points.size(); ++k, ++next) {
-        std::vector<double>* const to[] = {&m.da, &m.cda, &m.udi_lower, &m.udi, &m.udi_upper};
-        for (std::size_t f = 0; f < std::size(to); ++f)
-          to[f]->push_back(figures[f](solved.of_sensors[next], solved.rules));
-      }
-    }
-    honeybee_->commit(metrics);
-  }
-
- private:
-  std::vector<SensorPoint> sensors_;
-  std::vector<std::size_t> ends_;  ///< of the grids, among all sensors
-  std::unique_ptr<HourSeries> hours_;
-  std::optional<HoneybeeFolder> honeybee_;
 };
 
 /// Of what is asked, by the arguments.
@@ -172,33 +113,6 @@ double north_of(const Scene& scene, Console& console) {
   return *scene.model_north_deg;
 }
 
-/// Where the error of the hours decides what a room is worth, or leaves it open.
-void warn_of_year(const YearSolved& solved, const AnnualReport& annual, Console& console) {
-  constexpr double kMuch = 0.2;
-  const auto crosses = [](const ShareWithin& share, double limit) {
-    return (share.low >= limit) != (share.high >= limit);
-  };
-  for (const auto* areas : {&annual.rooms, &annual.grids})
-    for (const AreaOfYear& area : *areas) {
-      std::string edges;
-      for (const double limit : {40.0, 55.0, 75.0})
-        if (crosses(area.year.sDA, limit)) edges += (edges.empty() ? "sDA of " : " and ") + rounded(limit) + " %";
-      if (crosses(area.year.ASE_more_than, kLeedAse))
-        edges += std::string(edges.empty() ? "" : ", ") + "ASE of " + rounded(kLeedAse) + " %";
-      if (!edges.empty())
-        console.warn(area.name + ": whether it has an " + edges + " cannot be told at this accuracy; see its interval");
-    }
-  for (const auto& [where, e] :
-       {std::pair("sensors", &solved.error_sensors), std::pair("vertices", &solved.error_points)})
-    if (*e && !(*e)->bound && (*e)->rms_relative > kMuch)
-      console.warn("illuminances of single hours at " + std::string(where) + " are off by " +
-                   percent((*e)->rms_relative) + " of their mean; use a finer --accuracy");
-  if (annual.rooms.empty() && annual.grids.empty())
-    console.warn(
-        "there are no sensors, and no room with a floor was found: sDA, ASE and EN 17037 are of none; the figures "
-        "are on the vertices only");
-}
-
 void warn_of_lamps(const Scene& scene, Console& console) {
   const bool glows = std::ranges::any_of(scene.materials, [](const Material& m) { return m.emits(); });
   if (!scene.lights.luminaires.empty() || glows)
@@ -263,6 +177,7 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
       daylight_year(weather, scene.place.value_or(weather.place), north_of(scene, console), scene.ground_reflectance);
   for (const std::string& line : year.warnings) console.warn(line);
   warn_of_lamps(scene, console);
+  scene.lights = {};
   YearSettings settings = year_settings(arguments, scene, schedule, console);
   const bool has_sensors = !all_sensor_points(scene.sensors).empty();
   if (!has_sensors && (!arguments.hours.empty() || !arguments.honeybee.empty()))
@@ -271,13 +186,13 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
         ": there are no sensors whose hours could be written; give --sensors POINTS.csv, or \"sensors\" in "
         "the scene file.");
   if (!arguments.part) arguments.files.check_places(has_sensors);
-  SeriesOutputs series(arguments, scene, year, console);
+  YearSeriesFiles series(arguments.hours, arguments.honeybee, scene, year, console);
   settings.keeps_all_hours = series.any();
   lap.add_to(report.seconds.read);
 
   const YearSolved solved =
       solve_year(scene, year, settings, console,
-                 series.any() ? TakeSeries([&](const YearSeries& s) { series.take(s); }) : TakeSeries());
+                 series.any() ? TakeSeries([&](const SensorSeries& s) { series.take(s); }) : TakeSeries());
   const AnnualReport annual = annual_report(scene, year, schedule.name, solved);
   const double read_seconds = report.seconds.read;
   fill_report(report, scene, solved.solved);
@@ -285,7 +200,8 @@ ExitCode annual_command(const Arguments& arguments, Console& console) {
   report.settings = as_figures(arguments, schedule, settings, solved);
   if (solved.error_sensors) report.error_sensors = figures_of(*solved.error_sensors);
   if (solved.error_points) report.error = figures_of(*solved.error_points);
-  if (!arguments.part) warn_of_year(solved, annual, console);
+  if (!arguments.part)
+    for (const std::string& line : warnings_of(annual)) console.warn(line);
   report.warnings = console.warnings();
   Outputs outputs;
   if (arguments.part)

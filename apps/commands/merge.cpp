@@ -32,6 +32,8 @@ ExitCode merge_command(const Arguments& arguments, Console& console) {
   MergedYear year = merge.finish();
   arguments.files.check_places(!year.sensors.empty());
   for (const std::string& warning : year.report.warnings) console.warn(warning);
+  for (const std::string& warning : warnings_of(year.annual)) console.warn(warning);
+  year.report.warnings = console.warnings();  // as one run has them
   Outputs outputs;
   write_year(arguments.files, year.result, year.solved, year.annual, year.sensors, year.report, outputs);
   finish_report(year.report, arguments.common, console, outputs);

@@ -47,23 +47,20 @@ Monitor monitor_of(Observer& observer) {
   return {[&observer](std::string_view stage, double done) { observer.progress(stage, done); }, {}};
 }
 
-/// Hours that any figure counts, or all.
-std::vector<DaylightHour> hours_that_count(const DaylightYear& year, const YearSettings& settings) {
-  std::vector<int> hours;
-  std::vector<double> diffuse;
-  for (const DaylightHour& h : year.hours) hours.push_back(h.hour), diffuse.push_back(h.diffuse_horizontal_lux);
-  const YearRules all = year_rules(hours, diffuse, settings.is_occupied, settings.threshold);
-  std::vector<DaylightHour> counting;
-  for (std::size_t h = 0; h < hours.size(); ++h)
-    if (settings.keeps_all_hours || all.occupied[h] > 0 || all.daylight[h] > 0) counting.push_back(year.hours[h]);
-  return counting;
-}
-
 YearRules rules_of(std::span<const DaylightHour> hours, const YearSettings& settings) {
   std::vector<int> number;
   std::vector<double> diffuse;
   for (const DaylightHour& h : hours) number.push_back(h.hour), diffuse.push_back(h.diffuse_horizontal_lux);
   return year_rules(number, diffuse, settings.is_occupied, settings.threshold, settings.more_thresholds);
+}
+
+/// Hours that any figure counts, or all.
+std::vector<DaylightHour> hours_that_count(const DaylightYear& year, const YearSettings& settings) {
+  const YearRules all = rules_of(year.hours, settings);
+  std::vector<DaylightHour> counting;
+  for (std::size_t h = 0; h < year.hours.size(); ++h)
+    if (settings.keeps_all_hours || all.occupied[h] > 0 || all.daylight[h] > 0) counting.push_back(year.hours[h]);
+  return counting;
 }
 
 /// Of all hours of the year, whatever counts, so that what is asked for beside the figures does not change them; then
@@ -125,10 +122,10 @@ class PointYears {
              std::string_view stage, const Monitor& monitor)
       : states_(states), rules_(rules), error_(error), stage_(stage), monitor_(monitor) {}
 
-  /// closed_in   which blinds decide at a point: null, or the hours' sets of its room.
-  void run(std::span<const PlacesOfPoint> points, std::size_t begin, std::size_t end, const GatherPattern& pattern,
-           const std::vector<const YearArea*>& room_of, bool of_sensors, const TakeSeries& take,
-           std::vector<PointYear>& out) {
+  /// room_of  whose blinds are a point's; null: it has none.
+  void run(std::span<const PlacesOfPoint> points, YearSolved::Range range, const GatherPattern& pattern,
+           const std::vector<const YearArea*>& room_of, const TakeSeries& take, std::vector<PointYear>& out) {
+    const auto [begin, end] = range;
     const std::size_t H = states_.front()->year().hours;
     for (std::size_t first = begin; first < end; first += kBlock * kBlocksAtOnce) {
       const std::size_t last = std::min(end, first + kBlock * kBlocksAtOnce),
@@ -145,8 +142,8 @@ class PointYears {
       });
       for (std::size_t b = 0; b < blocks && take; ++b) {
         const std::size_t at = first + b * kBlock;
-        take({of_sensors, at, std::min(at + kBlock, last),
-              series[b].shaded.empty() ? series[b].total : series[b].shaded, series[b].direct});
+        take({at, std::min(at + kBlock, last), series[b].shaded.empty() ? series[b].total : series[b].shaded,
+              series[b].direct});
       }
     }
   }
@@ -213,7 +210,7 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   const Monitor monitor = monitor_of(observer);
   const YearEffort effort_of_year = year_effort(settings.solve.solve.accuracy);
   const std::vector<DaylightHour> hours = hours_that_count(year, settings);
-  if (hours.empty()) throw InputError(scene.file + ": no hour that counts has light; widen --schedule.");
+  if (hours.empty()) throw InputError(year.file + ": no hour has any light; take another weather file.");
   YearSolved out;
   out.rules = rules_of(hours, settings);
   for (const DaylightHour& h : hours) out.hours.push_back(h.hour);
@@ -237,12 +234,11 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   const SensorPlanes sensors = planes_of(scene.sensors);
   StageSeconds seconds;
   std::optional<PreparedToSolve> prepared = prepare_to_solve(shown, solving, observer, monitor, seconds);
-  if (!prepared) return out;
   warn_about_places(prepared->scene.problem(), shown, sensors, observer);
+  const AroundSolve around{.vertices = effort(Accuracy::draft).vertices};  // light there is gathered again below
   KeptTransport kept;
-  SolvedPatches solved =
-      solve(prepared->scene.problem(), std::move(prepared->lightmap), prepared->scene.repairs.max_element,
-            solving.solve, monitor, nullptr, {.vertices = effort(Accuracy::draft).vertices}, {}, &kept);
+  SolvedPatches solved = solve(prepared->scene.problem(), std::move(prepared->lightmap),
+                               prepared->scene.repairs.max_element, solving.solve, monitor, nullptr, around, {}, &kept);
   out.solved.panes = panes_of(prepared->scene.patches);
   out.solved.settings = solving;
   out.solved.repairs = prepared->scene.repairs;
@@ -259,7 +255,8 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
 
   // Windows open, and closed one group after the other.
   const StateOptions how{
-      fine, coarse, nodes, light, hours, prepared->scene.repairs.max_element, effort_of_year.sun_rays, solving.solve};
+      fine,          coarse, nodes, light, hours, prepared->scene.repairs.max_element, effort_of_year.sun_rays,
+      solving.solve, around};
   std::vector<std::unique_ptr<WindowState>> states;
   states.push_back(std::make_unique<WindowState>(prepared->scene, std::move(kept), how, monitor));
   add_closed_states(shown, *prepared, how, monitor, states);
@@ -287,13 +284,13 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   out.part_of_sensors = range_of_part(at_sensors.size(), settings.part, settings.parts);
   out.part_of_points = range_of_part(points.size(), settings.part, settings.parts);
   PointYears(states, out.rules, out.error_of_sensors, "sensors", monitor)
-      .run(at_sensors, out.part_of_sensors.begin, out.part_of_sensors.end, of_sensors,
-           rooms_of_points(at_sensors.size(), out.grids, set_of_sensors(scene.sensors)), true, take, out.of_sensors);
+      .run(at_sensors, out.part_of_sensors, of_sensors,
+           rooms_of_points(at_sensors.size(), out.grids, set_of_sensors(scene.sensors)), take, out.of_sensors);
   PointYears(states, out.rules, out.error_of_points, "points", monitor)
       .run(
-          points, out.part_of_points.begin, out.part_of_points.end, of_points,
+          points, out.part_of_points, of_points,
           rooms_of_points(points.size(), out.rooms, room_of_points(out.solved.patches, out.solved.lightmap, out.rooms)),
-          false, take, out.of_points);
+          {}, out.of_points);
   warn_about_result(out.solved, observer);
   show_mean(out.rules, out.of_points, out.solved);
   if (settings.parts == 1) add_up(out);

@@ -26,16 +26,16 @@ struct YearSettings {
   std::vector<double> more_thresholds{};  ///< whose hours are counted, too [lx]
   std::optional<std::size_t> sky_parts;   ///< 145, 577 or 2305; empty: by accuracy
   std::size_t part = 1, parts = 1;        ///< of the points, which part of how many is computed
-  bool keeps_all_hours = false;           ///< series are asked for of all hours with light, not just those that count
+  bool keeps_all_hours = false;           ///< series are of all hours with light, not just those that count
 };
 
-/// Takes series of points: of the sensors in order, then of the lightmap's points in order. Called from one thread.
-struct YearSeries {
-  bool of_sensors;
-  std::size_t begin, end;                ///< points
+/// Series of sensors begin, ..., end - 1.
+struct SensorSeries {
+  std::size_t begin, end;
   std::span<const float> total, direct;  ///< (end - begin) x H [lx]
 };
-using TakeSeries = std::function<void(const YearSeries&)>;
+/// Told of the sensors' series in their order, by one thread.
+using TakeSeries = std::function<void(const SensorSeries&)>;
 
 /// A room (what faces up in it) or a grid of sensors.
 struct YearArea {
@@ -44,8 +44,8 @@ struct YearArea {
   std::vector<double> weight;        ///< area that each stands for [m2]; of sensors 1, where it is not known
   std::vector<BlindsOfHour> blinds;  ///< H; empty without blinds
   BlindsYear closed;
-  AreaYear figures;  ///< where all of its points are known
-  std::uint32_t number = 0;  ///< of the room in PatchSet::rooms, or of the set
+  AreaYear figures;          ///< where all of its points are known
+  std::uint32_t number = 0;  ///< of the room in PatchSet::rooms
 };
 
 struct YearSolved {
@@ -67,8 +67,8 @@ struct YearSolved {
 /// Daylight coefficients of all points, by one solve under the year's mean sky; each hour is a sum of them, with the
 /// sun by shadow rays of its own.
 ///
-/// take  null, or told of every series.
-/// throws  InputError: no light, settings out of range.
+/// take  null, or told of the sensors' series.
+/// throws  InputError: no daylight reaches the model, a scene or settings that cannot be solved.
 YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSettings& settings, Observer& observer,
                       const TakeSeries& take = {});
 

@@ -6,11 +6,9 @@
 #include "meshing/make_lightmap.h"
 #include "solver/evaluate/blinds.h"
 #include "solver/illumination/place_lights.h"
-#include "solver/methods/hierarchical.h"
 #include "solver/model/error.h"
 #include "solver/model/units.h"
 #include "solver/paths/find_slit_gains.h"
-#include "solver/run/accuracy.h"
 
 namespace clerestory {
 namespace {
@@ -49,19 +47,23 @@ void WindowState::year_at(std::span<const PlacesOfPoint> points, const GatherPat
   clerestory::year_at(*scene_, points, pattern, sums, total, direct);
 }
 
-void WindowState::sun_at(std::span<const PlacesOfPoint> points, std::span<float> direct) const {
+void WindowState::sun_at(std::span<const PlacesOfPoint> points, std::size_t first, std::size_t count,
+                         std::span<float> direct) const {
   std::fill(direct.begin(), direct.end(), 0.0f);
-  const std::size_t suns = scene_->suns.size(), H = scene_->year.hours;
+  const auto begin = std::ranges::lower_bound(scene_->hour_of_sun, first);
+  const auto end = std::lower_bound(begin, scene_->hour_of_sun.end(), first + count);
+  const auto from = static_cast<std::size_t>(begin - scene_->hour_of_sun.begin());
+  const auto suns = static_cast<std::size_t>(end - begin);
   std::vector<ReceivingPoint> places;
   for (const PlacesOfPoint& point : points) places.insert(places.end(), point.at.begin(), point.at.end());
   std::vector<float> factor(places.size() * suns);
-  sun_on_points(problem_.rays, places, scene_->suns, {}, factor);
+  sun_on_points(problem_.rays, places, std::span(scene_->suns).subspan(from, suns), {}, factor);
   std::size_t place = 0;
   for (std::size_t p = 0; p < points.size(); ++p)
     for (std::size_t k = 0; k < points[p].at.size(); ++k, ++place)
       for (std::size_t s = 0; s < suns; ++s) {
-        const std::size_t h = scene_->hour_of_sun[s];
-        direct[p * H + h] +=
+        const std::size_t h = scene_->hour_of_sun[from + s];
+        direct[p * count + h - first] +=
             static_cast<float>(kWhiteEfficacy * points[p].weight[k]) * scene_->year.sun[h] * factor[place * suns + s];
       }
 }
@@ -91,16 +93,9 @@ void add_closed_states(const Scene& scene, const PreparedToSolve& open, const St
     RayScene rays(patches);
     auto closed = std::make_unique<Prepared>(Prepared{std::move(patches), open.scene.repairs, std::move(rays), {}, {}});
     closed->lights = place_lights(scene.lights, closed->patches, closed->rays);
-    const Effort e = effort(how.solve.accuracy, how.solve.tighten);
-    HierarchyOptions options;
-    options.bundle_rays = e.bundle_rays, options.bright_rays = e.bright_rays;
-    options.tolerance = e.element_tolerance;
-    options.shortest_edge = e.shortest_edge * open.scene.repairs.max_element;
-    options.seed = how.solve.seed;
     KeptTransport kept;
-    options.keep = &kept;
-    ElementMesh mesh(closed->patches, make_lightmap(closed->patches));
-    hierarchical(closed->problem(), mesh, options, monitor);
+    solve(closed->problem(), make_lightmap(closed->patches), open.scene.repairs.max_element, how.solve, monitor,
+          nullptr, how.around, {}, &kept);
     states.push_back(std::make_unique<WindowState>(std::move(closed), taken, std::move(kept), how, monitor));
   }
 }

@@ -23,6 +23,7 @@ struct StateOptions {
   double plan_reach;
   std::size_t sun_rays;
   const SolveOptions& solve;
+  const AroundSolve& around;
 };
 
 class WindowState {
@@ -38,15 +39,16 @@ class WindowState {
   const YearLight& year() const { return scene_->year; }
   /// Share of the light of its closed panes that they lack; of those that lack least. 1 where none is closed.
   float share_taken() const { return share_taken_; }
-  const RayScene& rays() const { return problem_.rays; }
   /// With the elements of the transport.
   const Problem& problem() const { return problem_; }
 
   /// Illuminance by the hour at points, see clerestory::year_at(). Thread safe.
   void year_at(std::span<const PlacesOfPoint> points, const GatherPattern& pattern, std::span<float> total,
                std::span<float> direct) const;
-  /// Direct sun alone, wherever it may come from [lx].
-  void sun_at(std::span<const PlacesOfPoint> points, std::span<float> direct) const;
+  /// Direct sun alone, wherever it may come from, in hours first, ..., first + count - 1: points x count by point,
+  /// replaced [lx].
+  void sun_at(std::span<const PlacesOfPoint> points, std::size_t first, std::size_t count,
+              std::span<float> direct) const;
 
  private:
   std::unique_ptr<Prepared> own_;

@@ -1,12 +1,9 @@
 #include "pipeline/annual/year_areas.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <string_view>
-#include <utility>
 
 #include "solver/model/inner_rooms.h"
 #include "solver/model/parallel.h"
@@ -17,37 +14,40 @@ namespace {
 const double kFacesUp = std::cos(25 * std::numbers::pi / 180);
 
 /// Blinds scatter: what they let through closed is no beam, so closing a group takes all of its sun. That is what its
-/// closed state lacks, over the share that it lacks.
+/// closed state lacks, over the share that it lacks. Some hours at a time, so that memory does not grow with the year.
 void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::span<const PlacesOfPoint> points,
                 const YearRules& rules, YearArea& area) {
-  const std::size_t H = states.front()->year().hours, n = area.points.size();
+  constexpr std::size_t kHours = 128, kPoints = 32;
+  const std::size_t H = states.front()->year().hours, n = area.points.size(), groups = states.size() - 1;
   std::vector<PlacesOfPoint> own;
   for (const std::size_t p : area.points) own.push_back(points[p]);
-  std::vector<std::vector<float>> sun(states.size(), std::vector<float>(n * H));
-  parallel_for((n + 31) / 32, 1, [&](std::size_t from, std::size_t to) {
-    const std::size_t begin = 32 * from, count = std::min(32 * to, n) - begin;
-    for (std::size_t g = 0; g < states.size(); ++g)
-      states[g]->sun_at(std::span(own).subspan(begin, count), std::span(sun[g]).subspan(begin * H, count * H));
-  });
   area.blinds.resize(H);
-  std::vector<std::vector<float>> taken(states.size() - 1, std::vector<float>(n));
+  std::vector<std::vector<float>> sun(states.size()), taken(groups, std::vector<float>(n));
   std::vector<float> steady(n);
-  std::vector<WindowGroup> groups;
-  for (const std::vector<float>& by_group : taken) groups.push_back({by_group, 0});
-  for (std::size_t h = 0; h < H; ++h) {
-    bool any = false;
-    for (std::size_t p = 0; p < n; ++p) {
-      steady[p] = sun[0][p * H + h];
-      any = any || steady[p] >= kSunLux;
-      for (std::size_t g = 0; g < taken.size(); ++g) {
-        taken[g][p] = std::max(0.0f, sun[0][p * H + h] - sun[g + 1][p * H + h]) / states[g + 1]->share_taken();
-        steady[p] -= taken[g][p];
+  std::vector<WindowGroup> windows;
+  for (const std::vector<float>& of_group : taken) windows.push_back({of_group, 0});
+  for (std::size_t first = 0; first < H; first += kHours) {
+    const std::size_t hours = std::min(kHours, H - first);
+    for (std::vector<float>& of_state : sun) of_state.resize(n * hours);
+    parallel_for((n + kPoints - 1) / kPoints, 1, [&](std::size_t from, std::size_t to) {
+      const std::size_t begin = kPoints * from, count = std::min(kPoints * to, n) - begin;
+      for (std::size_t g = 0; g < states.size(); ++g)
+        states[g]->sun_at(std::span(own).subspan(begin, count), first, hours,
+                          std::span(sun[g]).subspan(begin * hours, count * hours));
+    });
+    for (std::size_t h = 0; h < hours; ++h) {
+      for (std::size_t p = 0; p < n; ++p) {
+        const float open = sun[0][p * hours + h];
+        steady[p] = open;
+        for (std::size_t g = 0; g < groups; ++g) {
+          taken[g][p] = std::max(0.0f, open - sun[g + 1][p * hours + h]) / states[g + 1]->share_taken();
+          steady[p] -= taken[g][p];
+        }
+        steady[p] = std::max(0.0f, steady[p]);
       }
-      steady[p] = std::max(0.0f, steady[p]);
+      area.blinds[first + h] = close_blinds(windows, steady);
+      if (rules.occupied[first + h] > 0) add_hour(area.blinds[first + h], area.closed);
     }
-    if (!any) continue;
-    area.blinds[h] = close_blinds(groups, steady);
-    if (rules.occupied[h] > 0) add_hour(area.blinds[h], area.closed);
   }
 }
 
@@ -84,7 +84,7 @@ std::vector<YearArea> grids_of(const std::vector<SensorSet>& sets) {
   std::size_t next = 0;
   for (const SensorSet& set : sets) {
     YearArea& grid = grids.emplace_back();
-    grid.name = set.name, grid.number = static_cast<std::uint32_t>(grids.size() - 1);
+    grid.name = set.name;
     for (std::size_t k = 0; k < set.points.size(); ++k) {
       grid.points.push_back(next++);
       grid.weight.push_back(set.area_of_point.value_or(1));

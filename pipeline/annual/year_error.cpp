@@ -125,7 +125,7 @@ std::vector<Reference> references(const Illumination& light, std::span<const Pla
         variance += std::pow(weight * luminous_mean(found.std_error[place]), 2);
         ++place;
       }
-      sum[p].paths += paths, sum[p].r += paths * r, sum[p].variance += double{1} * paths * paths * variance;
+      sum[p].paths += paths, sum[p].r += paths * r, sum[p].variance += static_cast<double>(paths) * paths * variance;
     }
     std::erase_if(open, [&](std::size_t p) { return std::sqrt(sum[p].variance) <= kNoise * sum[p].r; });
   }

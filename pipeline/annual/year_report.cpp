@@ -35,7 +35,42 @@ std::string line_of(const AreaOfYear& area, const AnnualReport& report) {
   return line;
 }
 
+/// Which limits lie within the interval of an area: "an sDA of 55 % and an ASE of 10 %"; empty for none.
+std::string open_limits(const AreaYear& year) {
+  std::string open;
+  const auto add = [&](const char* figure, const ShareWithin& share, double limit) {
+    if (reaches_share(share.low, limit) != reaches_share(share.high, limit))
+      open += (open.empty() ? "" : " and ") + ("an " + std::string(figure)) + " of " + rounded(limit) + " %";
+  };
+  for (const double limit : kLeedShares) add("sDA", year.sDA, limit);
+  add("ASE", year.ASE_more_than, kLeedAse);
+  return open;
+}
+
 }  // namespace
+
+std::vector<std::string> warnings_of(const AnnualReport& report) {
+  constexpr double kMuch = 0.2;  // of an illuminance: an interval that says little
+  std::vector<std::string> warnings;
+  const auto look_at = [&](const char* what, const std::vector<AreaOfYear>& areas, const YearError& error) {
+    std::string dark;
+    for (const AreaOfYear& area : areas) {
+      if (const std::string open = open_limits(area.year); !open.empty())
+        warnings.push_back(area.name + ": whether it has " + open +
+                           " cannot be told at this accuracy; see its interval");
+      if (!(area.year.mean > 0)) dark += (dark.empty() ? "" : ", ") + area.name;
+    }
+    if (!dark.empty()) warnings.push_back("no daylight arrives in " + dark);
+    if (!areas.empty() && error.total > kMuch)
+      warnings.push_back("illuminances of single hours in " + std::string(what) + " are only known to be within " +
+                         percent(error.total) + "; use a finer --accuracy");
+  };
+  look_at("rooms", report.rooms, report.error_rooms);
+  look_at("grids", report.grids, report.error_grids);
+  if (report.rooms.empty() && report.grids.empty())
+    warnings.push_back("there are no sensors, and no room with a floor was found: sDA, ASE and EN 17037 are of none");
+  return warnings;
+}
 
 AnnualReport annual_report(const Scene& scene, const DaylightYear& year, const std::string& schedule,
                            const YearSolved& solved) {

@@ -23,6 +23,10 @@ void show_mean(const YearRules& rules, const std::vector<PointYear>& of_points, 
 /// Figures as arrays of points, and of cells the mean of their corners; names as year_figures() has them.
 void add_figures(const YearSolved& solved, WrittenResult& result);
 
+/// What must be known of these figures: limits that lie within the interval of a room or grid, hours of which little is
+/// sure, rooms without daylight, no room at all.
+std::vector<std::string> warnings_of(const AnnualReport& report);
+
 /// A line for each room and grid: "room 1: sDA 62 % (58 to 66 %), ASE 8.1 %, ..."
 std::vector<std::string> lines_of(const AnnualReport& report);
 

@@ -79,10 +79,6 @@ ReflectedDaylight reflect_daylight(const KeptTransport& kept, const PatchSet& pa
   out.B.resize(n * channels * out.lanes);
   for (std::size_t first = 0, count; first < out.lanes; first += count) {
     monitor.report("reflected", static_cast<double>(first) / static_cast<double>(out.lanes));
-    if (monitor.should_stop()) {
-      out.complete = false;
-      return out;
-    }
     count = std::min(at_once, (first < sky ? sky : out.lanes) - first);
     const Field E =
         first < sky ? straight_from_sky(kept, parts, first, count)

@@ -20,7 +20,6 @@ struct ReflectedDaylight {
   int channels = 1;
   std::vector<float> B;                          ///< N x channels x lanes
   std::vector<std::vector<MirrorWay>> sun_ways;  ///< of each node, over which mirrors and panes its light comes, too
-  bool complete = true;                          ///< false: stopped
 
   std::span<const float> of(std::size_t element, int channel) const {
     return std::span(B).subspan(

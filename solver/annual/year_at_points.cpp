@@ -80,9 +80,9 @@ YearScene year_scene(const Illumination& light, const SkyParts& fine, const Refl
   return scene;
 }
 
-unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint> points, const GatherPattern& pattern,
-                           RowSums& sums, std::span<float> total, std::span<float> direct) {
-  unsigned long long rays = 0;
+void year_at(const YearScene& scene, std::span<const PlacesOfPoint> points, const GatherPattern& pattern, RowSums& sums,
+             std::span<float> total, std::span<float> direct) {
+  unsigned long long rays = 0;  // gathers count them
   LightRow row;
   std::vector<PointCoefficients> coefficients(
       points.size(), {std::vector<float>(scene.fine.count() + 1), std::vector<float>(scene.reflected.lanes)});
@@ -112,7 +112,6 @@ unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint
       for (std::size_t s = 0; s < suns; ++s)
         sun[p * H + scene.hour_of_sun[s]] += static_cast<float>(points[p].weight[k]) * at_places[place * suns + s];
   series_of(scene.year, coefficients, sun, total, direct);
-  return rays;
 }
 
 }  // namespace clerestory

@@ -43,8 +43,8 @@ YearScene year_scene(const Illumination& light, const SkyParts& fine, const Refl
 /// The sun is looked for where a point has seen sky within 15 degrees of it, by the rays of its gather: what they all
 /// miss is a hole of a few degrees.
 /// points   near each other, as far as that is possible: plans of gathers are shared among them.
-/// returns  rays sent. One thread.
-unsigned long long year_at(const YearScene& scene, std::span<const PlacesOfPoint> points, const GatherPattern& pattern,
-                           RowSums& sums, std::span<float> total, std::span<float> direct);
+/// One thread.
+void year_at(const YearScene& scene, std::span<const PlacesOfPoint> points, const GatherPattern& pattern, RowSums& sums,
+             std::span<float> total, std::span<float> direct);
 
 }  // namespace clerestory

@@ -41,9 +41,12 @@ struct ShareWithin {
 /// Whether a share [%] is so large. Sums of areas are rounded: twenty times a twentieth is the whole.
 constexpr bool reaches_share(double share, double least) { return share >= least - 1e-9; }
 
-/// Points that LEED v4.1 gives for an sDA 300/50 %.
+/// From each of these sDA 300/50 % on LEED v4.1 gives a point more.
+inline constexpr std::array<double, 3> kLeedShares = {40, 55, 75};
 constexpr int leed_points(double sDA) {
-  return reaches_share(sDA, 75) ? 3 : reaches_share(sDA, 55) ? 2 : reaches_share(sDA, 40) ? 1 : 0;
+  int points = 0;
+  for (const double share : kLeedShares) points += reaches_share(sDA, share);
+  return points;
 }
 inline constexpr double kLeedAse = 10;  ///< an ASE above it is to be explained in writing [%]
 
@@ -82,13 +85,13 @@ struct AreaOfYear {
 struct AnnualReport {
   std::string scene, weather, city;  ///< names of files, and of the place
   double latitude_deg = 0, longitude_deg = 0, timezone = 0;
-  std::string schedule;                      ///< as it was asked for, "8-18"
-  int occupied_hours = 0;                    ///< of the year
-  int lit_hours = 0;                         ///< with light outdoors
-  int missing_hours = 0;                     ///< of the weather file, taken as dark
-  double threshold = 300;                    ///< of DA, cDA and sDA [lx]
-  bool blinds_operated = false;              ///< the model has blinds, and sDA and the others but ASE are with them
-  YearError error_rooms, error_grids;        ///< that the intervals go by
+  std::string schedule;                ///< as it was asked for, "8-18"
+  int occupied_hours = 0;              ///< of the year
+  int lit_hours = 0;                   ///< with light outdoors
+  int missing_hours = 0;               ///< of the weather file, taken as dark
+  double threshold = 300;              ///< of DA, cDA and sDA [lx]
+  bool blinds_operated = false;        ///< the model has blinds, and sDA and the others but ASE are with them
+  YearError error_rooms, error_grids;  ///< that the intervals go by
   std::vector<AreaOfYear> rooms, grids;
 };
 

@@ -66,8 +66,8 @@ struct SolvedPatches {
 struct AroundSolve {
   std::span<const SensorPoint> sensors{};  ///< of irradiance_at_sensors(), by the same deadline
   double seconds_before = 0;               ///< to prepare the patches
-  /// What vertices are gathered with, where the caller gathers at them again and needs to know where they are; empty: as
-  /// the accuracy has it.
+  /// What vertices are gathered with, where the caller gathers at them again and needs to know where they are; empty:
+  /// as the accuracy has it.
   std::optional<GatherQuality> vertices{};
 };
 

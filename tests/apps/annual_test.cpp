@@ -107,6 +107,26 @@ TEST_F(Annual, BlindsAreClosedInAsFewGroupsAsKeepTheSunOut) {
   EXPECT_GT(left, 0.035);
 }
 
+TEST_F(Annual, FiguresAreTheSameWhateverElseIsAskedFor) {
+  ASSERT_EQ(annual("ground.json", {"--schedule", "10-12"}).exit_code, 0);
+  const std::string alone = read_text(folder / "year.json"), points = read_text(folder / "year.sensors.csv");
+  ASSERT_EQ(annual("ground.json", {"--schedule", "10-12", "--hours", folder / "hours"}).exit_code, 0);
+  EXPECT_EQ(read_text(folder / "year.json"), alone);
+  EXPECT_EQ(read_text(folder / "year.sensors.csv"), points);
+}
+
+TEST_F(Annual, PartsAreWarnedOfAsTheWholeIs) {
+  const ProgramRun whole = annual("ground.obj");
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_NE(whole.err.find("no room with a floor was found"), std::string::npos) << whole.err;
+  const std::string expected = read_text(folder / "year.vtp");
+  ASSERT_EQ(annual("ground.obj", {"--part", "1/1"}).exit_code, 0);
+  const ProgramRun merged = run_program({"merge", folder / "year.vtp", "-o", folder / "merged.vtp"});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_NE(merged.err.find("no room with a floor was found"), std::string::npos) << merged.err;
+  EXPECT_TRUE(read_text(folder / "merged.vtp") == expected);
+}
+
 TEST_F(Annual, RefusesWhatItCannotUse) {
   const auto refused = [&](const std::string& scene, const Words& more) {
     const ProgramRun run = annual(scene, more);

@@ -129,10 +129,12 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         // -> radiosity of elements, irradiance at vertices.
         Lap lap;
         const SolveOptions& options = settings.solve;
-        const AroundSolve around{sensors.planes, seconds.mesh + seconds.build};
         out.layers.layers = parts_of_light(scene, settings, lights, patches);
         SolvedPatches solved = solve(problem, std::move(prepared->lightmap), repairs.max_element, options, solving,
-                                     settings.debug ? &out.debug : nullptr, around, out.layers.layers);
+                                     {.sensors = sensors.planes,
+                                      .seconds_before = seconds.mesh + seconds.build,
+                                      .layers = out.layers.layers,
+                                      .debug = settings.debug ? &out.debug : nullptr});
         if (solved.rather) {
           out.rather = solved.rather;
           lap.add_to(seconds.gather);

@@ -235,10 +235,11 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   StageSeconds seconds;
   std::optional<PreparedToSolve> prepared = prepare_to_solve(shown, solving, observer, monitor, seconds);
   warn_about_places(prepared->scene.problem(), shown, sensors, observer);
-  const AroundSolve around{.vertices = effort(Accuracy::draft).vertices};  // light there is gathered again below
   KeptTransport kept;
+  // Light at vertices is gathered again below.
+  const AroundSolve around{.vertices = effort(Accuracy::draft).vertices, .keep = &kept};
   SolvedPatches solved = solve(prepared->scene.problem(), std::move(prepared->lightmap),
-                               prepared->scene.repairs.max_element, solving.solve, monitor, nullptr, around, {}, &kept);
+                               prepared->scene.repairs.max_element, solving.solve, monitor, around);
   out.solved.panes = panes_of(prepared->scene.patches);
   out.solved.settings = solving;
   out.solved.repairs = prepared->scene.repairs;

@@ -94,8 +94,10 @@ void add_closed_states(const Scene& scene, const PreparedToSolve& open, const St
     auto closed = std::make_unique<Prepared>(Prepared{std::move(patches), open.scene.repairs, std::move(rays), {}, {}});
     closed->lights = place_lights(scene.lights, closed->patches, closed->rays);
     KeptTransport kept;
+    AroundSolve around = how.around;
+    around.keep = &kept;
     solve(closed->problem(), make_lightmap(closed->patches), open.scene.repairs.max_element, how.solve, monitor,
-          nullptr, how.around, {}, &kept);
+          around);
     states.push_back(std::make_unique<WindowState>(std::move(closed), taken, std::move(kept), how, monitor));
   }
 }

@@ -102,12 +102,13 @@ std::vector<GatherQuality> coarser_than(const SolveOptions& options, GatherQuali
 }
 
 SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, double longest_edge,
-                                 const SolveOptions& options, const Monitor& monitor, HierarchyDebug* debug,
-                                 const AroundSolve& around, KeptTransport* keep, std::span<const Layer> layers) {
+                                 const SolveOptions& options, const Monitor& monitor, const AroundSolve& around,
+                                 KeptTransport* keep) {
   require_possible(problem, options);
   const Effort e = effort_of(options);
   const MemoryPlan plan =
-      memory_plan(problem.patches, map, layers.size() * static_cast<std::size_t>(problem.patches.channels), options)
+      memory_plan(problem.patches, map, around.layers.size() * static_cast<std::size_t>(problem.patches.channels),
+                  options)
           .value_or(kLeastPlan);
   const auto vertices_of = [&](const SolveOptions& level) {
     const Effort of_level = effort_of(level);
@@ -140,7 +141,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
   how.vertices = vertices;
   how.later = sensors;
   how.goes_on = goes_on;
-  how.layers = layers;
+  how.layers = around.layers;
   how.elements.oracle = options.oracle;
   how.elements.bundle_rays = plan.bundle_rays;
   how.elements.bright_rays = plan.bright_rays;
@@ -148,7 +149,7 @@ SolvedPatches solve_by_hierarchy(const Problem& problem, VertexLightmap map, dou
   how.elements.shortest_edge = vertices.shortest_edge;
   how.elements.most_elements = plan.most_elements;
   how.elements.seed = options.seed;
-  how.elements.debug = debug;
+  how.elements.debug = around.debug;
   how.elements.keep = keep;
   HierarchicalField field = hierarchical_field(problem, std::move(map), how, monitor);
   if (!field.went_on) return {{}, {}, {}, shown, rather};
@@ -290,17 +291,16 @@ SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, 
 }  // namespace
 
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor, HierarchyDebug* debug, const AroundSolve& around,
-                    std::span<const Layer> layers, KeptTransport* keep) {
+                    const Monitor& monitor, const AroundSolve& around) {
   UsedTransport used;
-  KeptTransport* const keep_links = options.check_laws ? &used.links : keep;
+  KeptTransport* const keep_links = options.check_laws ? &used.links : around.keep;
   FormFactorMatrix* const keep_matrix = options.check_laws ? &used.matrix : nullptr;
   constexpr double kShareToCheck = 0.1;  // of the time that is left
   const Monitor solving = options.check_laws ? monitor.within((1 - kShareToCheck) * monitor.seconds_left()) : monitor;
-  SolvedPatches solved = options.method == Method::hierarchical
-                             ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, solving, debug,
-                                                  around, keep_links, layers)
-                             : solve_by_other_method(problem, std::move(map), options, solving, keep_matrix);
+  SolvedPatches solved =
+      options.method == Method::hierarchical
+          ? solve_by_hierarchy(problem, std::move(map), longest_edge, options, solving, around, keep_links)
+          : solve_by_other_method(problem, std::move(map), options, solving, keep_matrix);
   if (solved.rather) return solved;
   if (options.check_laws) {
     const PatchSet& elements = solved.elements.patch_count() > 0 ? solved.elements : problem.patches;

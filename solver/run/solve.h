@@ -62,31 +62,31 @@ struct SolvedPatches {
   LayeredField layers{};             ///< empty unless asked for, and where there was no time for them
 };
 
-/// What a solve with a deadline must know of what comes before and after it.
+/// What a solve must know of what its caller does before and after it, and what it leaves for that.
 struct AroundSolve {
+  // Looked at where there is a deadline.
   std::span<const SensorPoint> sensors{};  ///< of irradiance_at_sensors(), by the same deadline
   double seconds_before = 0;               ///< to prepare the patches
-  /// What vertices are gathered with, where the caller gathers at them again and needs to know where they are; empty:
-  /// as the accuracy has it.
+  // Of the hierarchical method.
+  /// What vertices are gathered with, where the caller gathers there again and needs the places alone; empty: as the
+  /// accuracy has it.
   std::optional<GatherQuality> vertices{};
+  std::span<const Layer> layers{};  ///< parts that sum to the light of the problem; all else keeps its bits
+  KeptTransport* keep = nullptr;    ///< filled with the transport, where nothing stopped it and no laws are checked
+  HierarchyDebug* debug = nullptr;  ///< filled where it is there; nothing is computed for it otherwise
 };
 
 /// Solves by the method asked for, and shows the result at vertices.
 ///
 /// map           the lightmap of problem.patches.
-/// keep          null, or where the hierarchical method leaves its transport, where nothing stopped it.
 /// longest_edge  of the patches [m]; the hierarchical method halves them down to a share of it.
-/// debug         filled by the hierarchical method where it is asked for; nothing is computed for it otherwise.
 /// throws        InputError when the method needs more memory than there is, or cannot do what the scene has;
 ///               std::logic_error when a value comes out negative or as no number: nobody shall see it.
-/// around        looked at where there is a deadline.
-/// layers        of the hierarchical method: parts that sum to the light of the problem; all else keeps its bits.
 /// Stops early when the monitor says so, and returns what is solved so far, marked in Solution::stop; vertices that
 /// were not reached then show the mean of their elements. With a deadline fewer rays are sent rather than that; where
 /// that was so, Solution::stop tells. Threads: same bits for any thread count.
 SolvedPatches solve(const Problem& problem, VertexLightmap map, double longest_edge, const SolveOptions& options,
-                    const Monitor& monitor = {}, HierarchyDebug* debug = nullptr, const AroundSolve& around = {},
-                    std::span<const Layer> layers = {}, KeptTransport* keep = nullptr);
+                    const Monitor& monitor = {}, const AroundSolve& around = {});
 
 /// The first half of that for any method but the hierarchical one, which makes elements of its own: radiosity and
 /// irradiance of every patch.

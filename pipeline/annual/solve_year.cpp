@@ -31,18 +31,6 @@ constexpr std::size_t kBlock = 32;         ///< points of one task: their shadow
 constexpr std::size_t kBlocksAtOnce = 32;  ///< whose series are there together
 constexpr std::size_t kCoarseParts = 145;  ///< of light that surfaces send on
 
-/// What an accuracy means for a year.
-struct YearEffort {
-  std::size_t sky_parts;
-  double node_step_deg;
-  std::size_t sun_rays;
-};
-YearEffort year_effort(Accuracy accuracy) {
-  if (accuracy == Accuracy::draft) return {145, 12, 0};
-  if (accuracy == Accuracy::standard) return {577, 8, 64};
-  return {2305, 5, 256};
-}
-
 Monitor monitor_of(Observer& observer) {
   return {[&observer](std::string_view stage, double done) { observer.progress(stage, done); }, {}};
 }
@@ -208,17 +196,17 @@ std::vector<const YearArea*> rooms_of_points(std::size_t points, const std::vect
 YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSettings& settings, Observer& observer,
                       const TakeSeries& take) {
   const Monitor monitor = monitor_of(observer);
-  const YearEffort effort_of_year = year_effort(settings.solve.solve.accuracy);
+  const Effort effort_here = effort(settings.solve.solve.accuracy);
   const std::vector<DaylightHour> hours = hours_that_count(year, settings);
   if (hours.empty()) throw InputError(year.file + ": no hour has any light; take another weather file.");
   YearSolved out;
   out.rules = rules_of(hours, settings);
   for (const DaylightHour& h : hours) out.hours.push_back(h.hour);
-  out.sky_parts = settings.sky_parts.value_or(effort_of_year.sky_parts);
+  out.sky_parts = settings.sky_parts.value_or(effort_here.year.sky_parts);
 
   // Hours -> light of sky parts and sun by the hour, and the one sky that elements are fitted to.
   const SkyParts fine(out.sky_parts), coarse(kCoarseParts);
-  const SunNodes nodes = nodes_of(year, hours, effort_of_year.node_step_deg);
+  const SunNodes nodes = nodes_of(year, hours, effort_here.year.node_step_deg);
   out.sun_nodes = nodes.direction.size();
   const YearLight light = light_of_year(hours, fine, coarse, nodes);
   const std::vector<float>& counts = out.rules.occupied;
@@ -256,7 +244,7 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
 
   // Windows open, and closed one group after the other.
   const StateOptions how{
-      fine,          coarse, nodes, light, hours, prepared->scene.repairs.max_element, effort_of_year.sun_rays,
+      fine,          coarse, nodes, light, hours, prepared->scene.repairs.max_element, effort_here.year.sun_rays,
       solving.solve, around};
   std::vector<std::unique_ptr<WindowState>> states;
   states.push_back(std::make_unique<WindowState>(prepared->scene, std::move(kept), how, monitor));
@@ -266,7 +254,6 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   const std::vector<PlacesOfPoint> points = places_of(out.solved.lightmap, prepared->scene.rays);
   const std::vector<PlacesOfPoint> at_sensors =
       places_of(sensors, prepared->scene.patches.origin, prepared->scene.rays);
-  const Effort effort_here = effort(solving.solve.accuracy, solving.solve.tighten);
   const GatherPattern of_points(effort_here.vertices, solving.solve.seed),
       of_sensors(effort_here.sensors, solving.solve.seed);
 

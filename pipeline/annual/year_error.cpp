@@ -12,20 +12,11 @@
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
+#include "solver/run/accuracy.h"
 
 namespace clerestory {
 namespace {
 
-struct Counts {
-  std::size_t hours, points;  ///< points in each hour, other ones in every hour
-  int paths;                  ///< a point, before those that are noisy get more
-  int sun_rays;
-};
-Counts counts_of(Accuracy accuracy) {
-  if (accuracy == Accuracy::draft) return {8, 12, 128, 64};
-  if (accuracy == Accuracy::standard) return {16, 16, 256, 256};
-  return {32, 24, 512, 1024};
-}
 constexpr double kNoise = 0.05;  ///< of a reference, relative: below it a point gets no more paths
 constexpr int kMostRounds = 3;   ///< of twice as many paths each
 
@@ -137,7 +128,7 @@ std::vector<Reference> references(const Illumination& light, std::span<const Pla
 /// All light of each hour at points of its own, as far as there are enough; direct sun at all of them.
 YearComparisons compare(const WindowState& open, const Prepared& scene, std::span<const PlacesOfPoint> points,
                         const GatherPattern& pattern, std::span<const DaylightHour> hours,
-                        std::span<const std::size_t> look_at, const Counts& counts, std::uint64_t seed,
+                        std::span<const std::size_t> look_at, const YearEffort& spend, std::uint64_t seed,
                         const Monitor& monitor) {
   const std::size_t H = open.year().hours;
   std::vector<float> total(points.size() * H), direct(points.size() * H);
@@ -161,7 +152,8 @@ YearComparisons compare(const WindowState& open, const Prepared& scene, std::spa
     const std::size_t each = (points.size() + look_at.size() - 1) / look_at.size();
     for (std::size_t j = 0; j < each; ++j)
       number.push_back((k * each + j) % points.size()), own.push_back(&points[number.back()]);
-    const std::vector<Reference> reference = references(light, own, counts.paths, stream_key(seed, kYearErrorPaths, h));
+    const std::vector<Reference> reference =
+        references(light, own, spend.error_paths, stream_key(seed, kYearErrorPaths, h));
     for (std::size_t j = 0; j < own.size(); ++j)
       found.total.push_back(
           {.x = total[number[j] * H + h] / kWhiteEfficacy, .r = reference[j].r, .std_error = reference[j].std_error});
@@ -172,9 +164,10 @@ YearComparisons compare(const WindowState& open, const Prepared& scene, std::spa
         Comparison& of_direct = found.direct[first + p];
         of_direct.x = direct[p * H + h] / kWhiteEfficacy;
         for (std::size_t s = 0; s < points[p].at.size(); ++s)
-          of_direct.r += points[p].weight[s] * luminous_mean(light.sampler.delta_light(
-                                                   points[p].at[s].p, points[p].at[s].n, {.sun_rays = counts.sun_rays},
-                                                   stream_key(seed, kYearErrorPoints, h)));
+          of_direct.r +=
+              points[p].weight[s] * luminous_mean(light.sampler.delta_light(points[p].at[s].p, points[p].at[s].n,
+                                                                            {.sun_rays = spend.error_sun_rays},
+                                                                            stream_key(seed, kYearErrorPoints, h)));
       }
     });
   }
@@ -193,14 +186,14 @@ void measure_year_error(const WindowState& open, const Prepared& scene, std::spa
                         const GatherPattern& of_points, std::span<const PlacesOfPoint> sensors,
                         const GatherPattern& of_sensors, std::span<const DaylightHour> hours, const SolveOptions& solve,
                         const Monitor& monitor, YearSolved& out) {
-  const Counts counts = counts_of(solve.accuracy);
-  const std::vector<std::size_t> look_at = hours_to_look_at(hours, out.rules, counts.hours);
+  const YearEffort spend = effort(solve.accuracy).year;
+  const std::vector<std::size_t> look_at = hours_to_look_at(hours, out.rules, spend.error_hours);
   const auto measure = [&](std::span<const PlacesOfPoint> all, const std::vector<YearArea>& areas,
                            const GatherPattern& pattern, std::optional<ErrorFigures>& figures, YearError& error) {
     if (all.empty()) return;
-    const std::size_t count = look_at.size() * counts.points / (sensors.empty() ? 1 : 2);
+    const std::size_t count = look_at.size() * spend.error_points / (sensors.empty() ? 1 : 2);
     const YearComparisons found = compare(open, scene, even_choice(all, points_of(areas, all.size()), count), pattern,
-                                          hours, look_at, counts, solve.seed, monitor);
+                                          hours, look_at, spend, solve.seed, monitor);
     figures = summarise(found.total);
     error = error_of(found, out.rules.threshold);
   };

@@ -10,6 +10,17 @@
 
 namespace clerestory {
 
+/// The same of a year of daylight.
+struct YearEffort {
+  std::size_t sky_parts;  ///< that points see straight, one of kSkyPartCounts
+  double node_step_deg;   ///< between positions of the sun whose light surfaces send on
+  std::size_t sun_rays;   ///< to the disc, where a point lies in half-shadow
+  // Measured error of single hours.
+  std::size_t error_hours, error_points;  ///< points in each hour, other ones in every hour
+  int error_paths;                        ///< a point, before those that are noisy get more
+  int error_sun_rays;
+};
+
 /// What a solve spends and tolerates.
 struct Effort {
   // Triangles to aim for when no longest edge is given; few where elements are halved later.
@@ -36,6 +47,7 @@ struct Effort {
   int paths, paths_of_sensor;   ///< from each patch and vertex; from each sensor
 
   ErrorEffort error;
+  YearEffort year;
 };
 
 /// tighten  times that the effort was raised to reach a target error: each time twice the rays, and tolerances that

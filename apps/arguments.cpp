@@ -56,6 +56,10 @@ void add_common_options(CLI::App& command, CommonArguments& arguments) {
   command.add_option("--report", arguments.report, "figures of the run as JSON")->type_name("FILE.json");
 }
 
+void add_solution_input(CLI::App& command, std::string& input, const std::string& help) {
+  command.add_option("SOLUTION", input, help)->type_name("FILE.vtp")->required();
+}
+
 void add_input_options(CLI::App& command, std::string& input, ReadOptions& options) {
   command.add_option("INPUT", input, "scene (.json) or model (.obj .glb .gltf .ply .stl .off .dae .fbx .ifc)")
       ->type_name("FILE")

@@ -26,6 +26,10 @@ struct CommonArguments {
 /// --threads, --seed, --quiet, --verbose, --log, --report
 void add_common_options(CLI::App& command, CommonArguments& arguments);
 
+/// SOLUTION, of a command that starts from a result.
+void add_solution_input(CLI::App& command, std::string& input,
+                        const std::string& help = "a result of clerestory solve");
+
 /// INPUT, --unit, --up, --sky
 void add_input_options(CLI::App& command, std::string& input, ReadOptions& options);
 

@@ -8,17 +8,14 @@
 
 namespace CLI {
 class App;
-class Option;
-}  // namespace CLI
+}
 
 namespace clerestory {
 
-/// What is wrong with one, or nothing.
-std::string problem_with_factor(const std::string& set);
+void add_set_option(CLI::App& command, std::vector<std::string>& set);
 
-/// Of those that have no problem.
+/// Needs: words that the command line took.
+/// throws  CLI::ValidationError when a layer is set twice.
 std::vector<LayerFactor> layer_factors(const std::vector<std::string>& set);
-
-CLI::Option* add_set_option(CLI::App& command, std::vector<std::string>& set);
 
 }  // namespace clerestory

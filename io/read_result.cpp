@@ -197,18 +197,32 @@ SkyTable sky_of(const Tables& tables, const std::string& name, int channels) {
   return sky;
 }
 
+/// That points, or cells, have all light and that of each layer, in arrays that add up.
+void require_layers(const std::map<std::string, WrittenArray>& of_what, const std::vector<std::string>& names,
+                    int channels, const std::filesystem::path& file) {
+  const auto require = [&](const std::string& name, int components) {
+    const auto at = of_what.find(name);
+    if (at == of_what.end() || at->second.components != components)
+      refuse(file, text("has layers, and not on all points and cells an array '", quotable(name), "' of as many ",
+                        "components as they need, ", components));
+  };
+  require("irradiance", channels), require("radiosity", channels);
+  for (const std::string& name : names) {
+    require(of_layer("irradiance", name), channels), require(of_layer("illuminance", name), 1);
+    if (const std::string radiosity = of_layer("radiosity", name); of_what.contains(radiosity))
+      require(radiosity, channels);
+  }
+}
+
 /// throws  InputError when a layer has no light of its own.
 std::vector<ShownLayer> layers_of(const Tables& tables, const std::vector<std::string>& names,
                                   const WrittenResult& result, const std::filesystem::path& file) {
   const std::size_t n = names.size();
+  for (const auto* of_what : {&result.of_points, &result.of_cells})
+    if (n > 0) require_layers(*of_what, names, result.channels(), file);
   const auto energy = tables.numbers(arrays::kLayerEnergy, 3, n), factors = tables.numbers(arrays::kLayerFactors, 1, n);
   std::vector<ShownLayer> layers;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::string array = of_layer("irradiance", names[i]);
-    for (const auto* arrays : {&result.of_points, &result.of_cells})
-      if (const auto at = arrays->find(array); at == arrays->end() || at->second.components != result.channels())
-        refuse(file, text("has a layer '", quotable(names[i]), "', and no array '", quotable(array),
-                          "' of as many components as 'irradiance'"));
     layers.push_back({names[i],
                       {energy[3 * i], energy[3 * i + 1], energy[3 * i + 2]},
                       sky_of(tables, of_layer(arrays::kSky, names[i]), result.channels()),

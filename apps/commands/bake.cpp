@@ -179,7 +179,7 @@ ExitCode bake_command(const Arguments& arguments, Console& console) {
 void add_bake_command(CLI::App& program, Task& task) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *program.add_subcommand("bake", "a solution as a lightmap for other programs");
-  command.add_option("SOLUTION", arguments->input, "what clerestory solve wrote (.vtp)")->type_name("FILE")->required();
+  add_solution_input(command, arguments->input);
   command
       .add_option("-o,--output", arguments->output,
                   "the lightmap: by its name PLY, OBJ, binary glTF, or EXR, a texture alone")

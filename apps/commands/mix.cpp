@@ -53,11 +53,10 @@ void say_mix(const RunReport& report, const RunReport& before, Console& console)
     for (const std::string& line : sensor_table(report.sensors)) console.say("  " + line);
 }
 
-/// "dimmed  windows=0.2 middle=0.6: 8,960 lm of 26,880 lm, 66.7 % saved"
+/// "dimmed  'windows'=0.2000, 'middle'=0.6000: 8,960 lm of 26,880 lm, 66.7 % saved"
 void say_found(const FoundFactors& found, Console& console) {
-  std::string line = "  dimmed ";
-  for (const LayerFactor& f : found.factors) line += " " + f.layer + "=" + rounded(f.factor, 4);
-  line += ": " + rounded(found.luminous_flux, 4) + " lm of " + rounded(found.full_flux, 4) + " lm";
+  std::string line = "  dimmed  " + factor_words(found.factors, 4) + ": " + rounded(found.luminous_flux, 4) +
+                     " lm of " + rounded(found.full_flux, 4) + " lm";
   if (found.luminous_flux == 0)
     line += "; there is enough light without";
   else if (found.luminous_flux <= found.full_flux)
@@ -65,7 +64,8 @@ void say_found(const FoundFactors& found, Console& console) {
   console.say(line);
 }
 
-ExitCode mix_command(const Arguments& arguments, Console& console) {
+/// set  factors that the command line gives.
+ExitCode mix_command(const Arguments& arguments, std::vector<LayerFactor> set, Console& console) {
   check_writable(arguments.output);
   if (!arguments.sensors_output.empty()) check_writable(arguments.sensors_output);
   Lap lap;
@@ -77,7 +77,6 @@ ExitCode mix_command(const Arguments& arguments, Console& console) {
   if (!arguments.sensors_output.empty() && result.around.sensors.empty())
     throw InputError("--sensors-out " + arguments.sensors_output + ": " + arguments.input + " has no sensors.");
 
-  std::vector<LayerFactor> set = layer_factors(arguments.set);
   std::optional<FoundFactors> found;
   if (const auto request = dim_request(arguments.dim)) {
     found = find_factors(result, set, *request);
@@ -112,9 +111,7 @@ void add_mix_command(CLI::App& program, Task& task) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *program.add_subcommand("mix", "a result in layers, lit anew: luminaires dimmed, sky and sun changed");
-  command.add_option("SOLUTION", arguments->input, "a result of clerestory solve --layers")
-      ->type_name("FILE.vtp")
-      ->required();
+  add_solution_input(command, arguments->input, "a result of clerestory solve --layers");
   command.add_option("-o,--output", arguments->output, "the result under this light, with its layers")
       ->type_name("OUT.vtp")
       ->required();
@@ -130,10 +127,10 @@ void add_mix_command(CLI::App& program, Task& task) {
   command.callback([arguments, &task] {
     if (arguments->set.empty() && arguments->dim.targets.empty())
       throw CLI::ValidationError("mix", "needs --set LAYER=FACTOR or --target GRID=LUX");
-    task = [arguments] {
+    task = [arguments, set = layer_factors(arguments->set)] {
       return run(arguments->common, arguments->input,
                  {{"-o", arguments->output}, {"--sensors-out", arguments->sensors_output}},
-                 [&](Console& console) { return mix_command(*arguments, console); });
+                 [&](Console& console) { return mix_command(*arguments, set, console); });
     };
   });
 }

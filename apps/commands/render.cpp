@@ -122,7 +122,7 @@ void add_render_command(CLI::App& program, Task& task) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *program.add_subcommand("render", "a picture of a result, in true or false colours");
   ViewRequest& view = arguments->view;
-  command.add_option("SOLUTION", arguments->input, "a result of clerestory solve")->type_name("FILE.vtp")->required();
+  add_solution_input(command, arguments->input);
   command
       .add_option("-o,--output", arguments->output,
                   "the picture; an .exr holds the values themselves: lux, cd/m2, %, of colours W/(m2 sr)")

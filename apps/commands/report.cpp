@@ -52,7 +52,7 @@ ExitCode report_command(const Arguments& arguments, Console& console) {
 void add_report_command(CLI::App& program, Task& task) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *program.add_subcommand("report", "a result as one page: figures, plans, a 3D view");
-  command.add_option("SOLUTION", arguments->input, "result of clerestory solve")->type_name("FILE.vtp")->required();
+  add_solution_input(command, arguments->input);
   command.add_option("-o,--output", arguments->output, "the page; it needs no other file and no network")
       ->type_name("REPORT.html")
       ->required();

@@ -1,5 +1,5 @@
 // The sliders of a page whose result has layers (io/page/plan_data.h): plans, figures of sensors and the 3D view follow
-// them at once. With all of them as they were solved the page is as it was written.
+// them at once. With all of them at 100 % the page is as it was written.
 
 import { cellPaths, colourOf, figuresOf, isoluxLevels, isoluxPieces, luxWords, mixed, percent } from './mixing.mjs';
 import { unpack } from './solution.mjs';
@@ -96,7 +96,7 @@ class LitPlan {
     say('U0', figures.uniformity.toFixed(2));
     say('keyMean', `${luxWords(figures.mean)} lx`);
     say('keyUniformity', figures.uniformity.toFixed(2));
-    // Of the sky that was solved.
+    // Of the sky that the result has.
     for (const name of ['DF mean', 'DF median', 'DF 2 % or more']) say(name, '');
     const { target } = this.head;
     if (target === undefined) return;
@@ -126,7 +126,7 @@ export async function startLayers(onChange) {
     sliders.forEach((slider) => (slider.nextElementSibling.value = `${slider.value} %`));
     const solved = weights.every((weight) => weight === 1);
     document.body.classList.toggle('relit', !solved);
-    now.textContent = solved ? '' : `Shown with ${sliders.map((s) => `${s.name} at ${s.value} %`).join(', ')} of what was solved.`;
+    now.textContent = solved ? '' : `Shown with ${sliders.map((s) => `${s.name} at ${s.value} %`).join(', ')} of what the result has.`;
     for (const plan of plans) solved ? plan.restore() : plan.relight(weights);
     onChange(weights, solved);
   };

@@ -24,7 +24,7 @@ std::string layer_sliders(std::span<const std::string> layers) {
         text("<label>", xml_text(layer), " <input type=\"range\" name=\"", xml_text(layer),
              "\" min=\"0\" max=\"150\" step=\"1\" value=\"100\" autocomplete=\"off\"><output>100 %</output></label>\n");
   return out +
-         "<button type=\"button\" id=\"layers-solved\">As solved</button> <button type=\"button\" "
+         "<button type=\"button\" id=\"layers-solved\">As in the result</button> <button type=\"button\" "
          "id=\"layers-off\">All "
          "off</button>\n<p id=\"layers-now\" aria-live=\"polite\"></p>\n</div>\n" +
          embedded_json("layers-head", {{"colours", colours}});

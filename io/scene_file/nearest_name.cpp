@@ -4,6 +4,8 @@
 #include <cctype>
 #include <vector>
 
+#include "io/some_of.h"
+
 namespace clerestory {
 namespace {
 
@@ -45,9 +47,11 @@ std::string suggestion(std::string_view mistyped, std::span<const std::string_vi
   if (fewest <= std::max<std::size_t>(1, std::max(typed.size(), nearest.size()) * 2 / 5)) {
     return "did you mean '" + std::string(nearest) + "'?";
   }
-  std::string list;
-  for (const std::string_view name : known) list += (list.empty() ? "" : ", ") + std::string(name);
-  return "known are " + list;
+  const bool quoted =
+      std::ranges::any_of(known, [](std::string_view name) { return name.find_first_of(" ,") != name.npos; });
+  const std::string mark = quoted ? "'" : "";
+  return "known are " +
+         some_of(known, known.size(), [&](std::string_view name) { return mark + std::string(name) + mark; });
 }
 
 }  // namespace clerestory

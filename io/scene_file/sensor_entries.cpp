@@ -7,6 +7,7 @@
 #include "io/input_file.h"
 #include "io/read_sensors.h"
 #include "io/scene_file/material_rules.h"
+#include "io/some_of.h"
 #include "io/text.h"
 #include "io/unit_vector.h"
 #include "solver/model/error.h"
@@ -149,11 +150,7 @@ SensorSet grid_in(const NamedSpace& space, const JsonObject& object, SensorKind 
 }
 
 std::string names_of(const std::vector<NamedSpace>& spaces) {
-  constexpr std::size_t kShown = 6;
-  std::string names;
-  for (std::size_t s = 0; s < std::min(spaces.size(), kShown); ++s)
-    names += text(s ? ", '" : "'", quotable(spaces[s].name), "'");
-  return spaces.size() > kShown ? text(names, " and ", spaces.size() - kShown, " more") : names;
+  return some_of(spaces, 6, [](const NamedSpace& space) { return "'" + quotable(space.name) + "'"; });
 }
 
 bool is_named(const NamedSpace& space, const std::string& pattern) {

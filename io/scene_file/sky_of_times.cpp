@@ -1,11 +1,11 @@
 #include "io/scene_file/sky_of_times.h"
 
-#include <algorithm>
 #include <map>
 #include <vector>
 
 #include "io/moment.h"
 #include "io/scene_file/sky_entries.h"
+#include "io/some_of.h"
 #include "io/text.h"
 #include "solver/model/error.h"
 #include "solver/model/light_of_times.h"
@@ -30,13 +30,6 @@ void require_daylight_by_time(const JsonObject& root, const std::string& file_na
 
 bool is_dark(const LightSpec& light) {
   return light.suns.empty() && (!light.sky || light.sky->horizontal_irradiance.is_black());
-}
-
-std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 4;
-  std::string out;
-  for (std::size_t k = 0; k < std::min(names.size(), kShown); ++k) out += (k > 0 ? ", " : "") + names[k];
-  return names.size() > kShown ? text(out, " and ", names.size() - kShown, " more") : out;
 }
 
 /// Those of all times: what many say, and what only some do.
@@ -79,7 +72,7 @@ void read_sky_of_times(const JsonObject& root, const std::string& file_name, con
   require_daylight_by_time(root, file_name);
   std::vector<LightSpec> lights;
   WarningsOfTimes warnings;
-  std::vector<std::string> night;
+  std::vector<Moment> night;
   bool sky_at_night = false;
   TimeOfSeries series;
   for (const Moment& moment : times) {
@@ -99,7 +92,7 @@ void read_sky_of_times(const JsonObject& root, const std::string& file_name, con
                             "a normal_illuminance, or a sky that goes by the sun or a weather file"));
     scene.times.push_back({moment, *daylight});
     if (is_dark(light))
-      night.push_back(moment_text(moment));
+      night.push_back(moment);
     else if (daylight->sun.elevation_deg <= 0)
       sky_at_night = true;
   }
@@ -111,8 +104,8 @@ void read_sky_of_times(const JsonObject& root, const std::string& file_name, con
   const std::vector<std::string> said = warnings.in_short(times.size());
   scene.warnings.insert(scene.warnings.end(), said.begin(), said.end());
   if (!night.empty())
-    scene.warnings.push_back(
-        text("--times: no light of sky or sun at ", night.size(), " of ", times.size(), " times: ", some_of(night)));
+    scene.warnings.push_back(text("--times: no light of sky or sun at ", night.size(), " of ", times.size(),
+                                  " times: ", some_of(night, 4, moment_text)));
   if (sky_at_night)
     scene.warnings.push_back(
         text(file_name, ": sky: it is as bright as by day when the sun is down; a \"weather\" file ", "knows night"));

@@ -1,11 +1,13 @@
 #include "pipeline/annual/year_parts.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "io/annual/year_part_tables.h"
 #include "io/as_written.h"
 #include "io/read_run_report.h"
+#include "io/some_of.h"
 #include "io/text.h"
 #include "pipeline/annual/year_areas.h"
 #include "pipeline/annual/year_report.h"
@@ -71,14 +73,6 @@ void restore_surfaces(const WrittenResult& result, const YearPart& part, Solved&
 
 std::string value_of(const Figure& figure) {
   return std::visit([](const auto& value) { return text(value); }, figure.value);
-}
-
-std::string list_of(const std::vector<std::size_t>& numbers) {
-  constexpr std::size_t kShown = 20;
-  std::string all;
-  for (std::size_t i = 0; i < std::min(kShown, numbers.size()); ++i)
-    all += (i > 0 ? ", " : "") + std::to_string(numbers[i]);
-  return numbers.size() > kShown ? text(all, " and ", numbers.size() - kShown, " more") : all;
 }
 
 /// What differs in the files that were read; nothing where none does.
@@ -216,7 +210,7 @@ MergedYear YearMerge::finish() {
     if (files_[i].empty()) missing.push_back(i + 1);
   if (!missing.empty())
     throw InputError(text(first_.file, ": is part ", facts_.part, " of ", facts_.parts, ", and there ",
-                          missing.size() == 1 ? "is no part " : "are no parts ", list_of(missing),
+                          missing.size() == 1 ? "is no part " : "are no parts ", some_of(missing, 20, std::identity()),
                           "; run them by --part i/", facts_.parts, ", or name their files, too."));
   if (known_points_ != of_points_.size() || known_sensors_ != of_sensors_.size())
     throw InputError(first_.file + ": its parts do not fit together; run all of them again.");

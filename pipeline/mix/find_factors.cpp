@@ -1,9 +1,9 @@
 #include "pipeline/mix/find_factors.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "io/scene_file/nearest_name.h"
+#include "io/some_of.h"
 #include "io/text.h"
 #include "pipeline/wording.h"
 #include "solver/dimming/dim_to_target.h"
@@ -18,9 +18,9 @@ bool is_dimmed(const ShownLayer& layer, std::span<const LayerFactor> given) {
          std::ranges::find(given, layer.name, &LayerFactor::layer) == given.end();
 }
 
-/// "--target desk=500" or "--target desk=200:min".
+/// "--target 'desk'=500" or "--target 'desk'=200:min".
 std::string option_of(const GridTarget& target) {
-  return text("--target ", target.grid, "=", target.lux, target.of_minimum ? ":min" : "");
+  return text("--target '", quotable(target.grid), "'=", target.lux, target.of_minimum ? ":min" : "");
 }
 
 const MeasuredSensors& sensors_of(const WrittenResult& result, const GridTarget& target) {
@@ -33,11 +33,7 @@ const MeasuredSensors& sensors_of(const WrittenResult& result, const GridTarget&
   if (known.empty())
     throw InputError(where + ": the result has no sensors; give the scene \"sensors\" and solve it again.");
   const std::string near = suggestion(target.grid, known);
-  throw InputError(where + ": there are no sensors '" + target.grid + "'; " + near + (near.ends_with('?') ? "" : "."));
-}
-
-double mean_of(const std::vector<double>& lux) {
-  return std::accumulate(lux.begin(), lux.end(), 0.0) / static_cast<double>(lux.size());
+  throw InputError(where + ": there are no sensors of that name; " + near + (near.ends_with('?') ? "" : "."));
 }
 
 /// The layers that are dimmed, by one factor each or all by one.
@@ -79,30 +75,31 @@ DimTarget target_of(const WrittenResult& result, const Dimmed& dimmed, std::span
   return out;
 }
 
-/// "ceiling, desk and 3 more"
+/// "'ceiling', 'desk' and 3 more"
 std::string names_of(const WrittenResult& result, const Dimmed& dimmed) {
-  constexpr std::size_t kFew = 4;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(dimmed.layers.size(), kFew); ++i)
-    names += (i == 0 ? "" : ", ") + result.around.layers[dimmed.layers[i]].name;
-  return dimmed.layers.size() > kFew ? text(names, " and ", dimmed.layers.size() - kFew, " more") : names;
+  return some_of(dimmed.layers, 4,
+                 [&](std::size_t k) { return text("'", quotable(result.around.layers[k].name), "'"); });
+}
+
+std::vector<LayerFactor> factors_at(const WrittenResult& result, const Dimmed& dimmed, const DimLevels& found) {
+  std::vector<LayerFactor> factors;
+  for (std::size_t i = 0; i < dimmed.layers.size(); ++i)
+    factors.push_back({result.around.layers[dimmed.layers[i]].name, found.level[dimmed.factor_of[i]]});
+  return factors;
 }
 
 [[noreturn]] void refuse(const WrittenResult& result, const DimRequest& request, const Dimmed& dimmed,
                          const std::vector<DimTarget>& targets, const DimLevels& found) {
   std::string problem = result.file + ": ";
   if (found.outcome == DimLevels::Outcome::too_uneven) {
-    problem += text("--uniformity ", *request.uniformity, " cannot be reached with these targets: the best that ",
-                    names_of(result, dimmed), " can give is ", rounded(found.best_uniformity, 3), " (at factors");
-    for (std::size_t i = 0; i < dimmed.layers.size(); ++i)
-      problem += text(i == 0 ? " " : ", ", result.around.layers[dimmed.layers[i]].name, "=",
-                      rounded(found.level[dimmed.factor_of[i]], 3));
-    throw InputError(problem + "); ask for less, or move or add luminaires.");
+    throw InputError(
+        text(problem, "--uniformity ", *request.uniformity, " cannot be reached with these targets: the best that ",
+             names_of(result, dimmed), " can give is ", rounded(found.best_uniformity, 3), " (at factors ",
+             factor_words(factors_at(result, dimmed, found), 3), "); ask for less, or move or add luminaires."));
   }
   bool first = true;
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    const std::vector<double> lux = clerestory::dimmed(targets[t], found.level);
-    const double best = targets[t].of_minimum ? std::ranges::min(lux) : mean_of(lux);
+    const double best = light_at(targets[t], found.level);
     if (best >= targets[t].lux) continue;
     problem += text(first ? "" : "; ", option_of(request.targets[t]), " cannot be reached: ", names_of(result, dimmed),
                     dimmed.layers.size() > 1 ? " all at " : " at ", request.most,
@@ -128,8 +125,7 @@ FoundFactors find_factors(const WrittenResult& result, std::span<const LayerFact
   if (found.outcome != DimLevels::Outcome::reached) refuse(result, request, dimmed, targets, found);
 
   FoundFactors out;
-  for (std::size_t i = 0; i < dimmed.layers.size(); ++i)
-    out.factors.push_back({result.around.layers[dimmed.layers[i]].name, found.level[dimmed.factor_of[i]]});
+  out.factors = factors_at(result, dimmed, found);
   for (std::size_t f = 0; f < dimmed.flux.size(); ++f)
     out.luminous_flux += found.level[f] * dimmed.flux[f], out.full_flux += dimmed.flux[f];
   return out;

@@ -5,7 +5,9 @@
 
 #include "io/as_written.h"
 #include "io/scene_file/nearest_name.h"
+#include "io/some_of.h"
 #include "io/text.h"
+#include "pipeline/wording.h"
 #include "solver/evaluate/sensor_summary.h"
 #include "solver/lights/layers.h"
 #include "solver/model/error.h"
@@ -128,7 +130,7 @@ std::vector<double> factors_of(const WrittenResult& result, std::span<const Laye
   const std::vector<ShownLayer>& layers = result.around.layers;
   if (layers.empty())
     throw InputError(text(result.file, ": has no layers to mix; solve the scene again with --layers."));
-  std::vector<std::optional<double>> asked(layers.size());
+  std::vector<double> factors(layers.size(), 1);
   for (const auto& [name, factor] : set) {
     const auto at = std::ranges::find(layers, name, &ShownLayer::name);
     if (at == layers.end()) {
@@ -141,14 +143,14 @@ std::vector<double> factors_of(const WrittenResult& result, std::span<const Laye
     if (!(factor >= 0 && factor <= kMostFactor))
       throw InputError(text("layer '", quotable(name), "': factor = ", factor, " is outside [0, ", kMostFactor,
                             "]; 1 is the light as the result has it."));
-    std::optional<double>& to = asked[static_cast<std::size_t>(at - layers.begin())];
-    if (to)
-      throw InputError(text("layer '", quotable(name), "' is set twice, to ", *to, " and ", factor, "; keep one."));
-    to = factor;
+    factors[static_cast<std::size_t>(at - layers.begin())] = factor;
   }
-  std::vector<double> factors;
-  for (const std::optional<double>& factor : asked) factors.push_back(factor.value_or(1));
   return factors;
+}
+
+std::string factor_words(std::span<const LayerFactor> factors, int digits) {
+  return some_of(factors, factors.size(),
+                 [&](const LayerFactor& f) { return text("'", quotable(f.layer), "'=", rounded(f.factor, digits)); });
 }
 
 void mix_layers(WrittenResult& result, std::span<const double> factors) {

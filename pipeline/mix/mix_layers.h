@@ -20,9 +20,13 @@ struct LayerFactor {
 
 /// Factors by layer of the result, in its order; 1 for those that are not named.
 ///
-/// throws  InputError when the result has no layers, or not that one (with the nearest name), when one is named twice,
-///         and when a factor is outside [0, kMostFactor].
+/// set     a layer at most once.
+/// throws  InputError when the result has no layers, or not that one (with the nearest name), and when a factor is
+///         outside [0, kMostFactor].
 std::vector<double> factors_of(const WrittenResult& result, std::span<const LayerFactor> set);
+
+/// "'windows'=0.2000, 'middle'=0.6000": as --set takes them.
+std::string factor_words(std::span<const LayerFactor> factors, int digits);
 
 /// Scales the layers, with all that belongs to them (energy, sky, luminaires, sensors), and makes the light their sum:
 ///   E = sum f_s E_s,   B = sum f_s B_s, which is B E / E_before where surfaces only reflect.

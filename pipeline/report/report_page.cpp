@@ -7,6 +7,7 @@
 #include "io/page/html_table.h"
 #include "io/page/plan_data.h"
 #include "io/scene_file/nearest_name.h"
+#include "io/some_of.h"
 #include "io/text.h"
 #include "pipeline/report/page_sections.h"
 #include "pipeline/wording.h"
@@ -80,6 +81,16 @@ std::string key_figures(const std::vector<RoomFigures>& rooms, const std::vector
   return out + "</dl>\n";
 }
 
+/// What clerestory mix made of the layers; nothing where they are as they were solved.
+std::string mixed_words(std::vector<ShownLayer> layers) {
+  std::erase_if(layers, [](const ShownLayer& layer) { return layer.factor == 1; });
+  if (layers.empty()) return {};
+  return "<p>This light was mixed. Of what was solved it has " +
+         some_of(layers, layers.size(),
+                 [](const ShownLayer& layer) { return xml_text(layer.name) + " at " + percent(layer.factor); }) +
+         ".</p>\n";
+}
+
 /// Links to the sections that there are: "<h2 id=\"view\">3D view</h2>".
 std::string contents_of(const std::string& body) {
   constexpr std::string_view kBegin = "<h2 id=\"";
@@ -122,10 +133,11 @@ std::string report_page(const WrittenResult& result, const RunReport& run, const
   body += luminaire_section(run) + daylight_section(result, run, sets) + material_section(result) + error_section(run) +
           run_section(result, run);
 
-  std::string page = text(kHead, "<title>Lighting report: ", xml_text(project), "</title>\n<style>\n", files.style,
-                          "</style>\n</head>\n<body>\n<header>\n<h1>", xml_text(project),
-                          "</h1>\n<p class=\"soft\">Lighting report, computed by Clerestory ", xml_text(run.version),
-                          "</p>\n", contents_of(body), "</header>\n", key_figures(rooms, sets, result, run));
+  std::string page =
+      text(kHead, "<title>Lighting report: ", xml_text(project), "</title>\n<style>\n", files.style,
+           "</style>\n</head>\n<body>\n<header>\n<h1>", xml_text(project),
+           "</h1>\n<p class=\"soft\">Lighting report, computed by Clerestory ", xml_text(run.version), "</p>\n",
+           contents_of(body), "</header>\n", key_figures(rooms, sets, result, run), mixed_words(result.around.layers));
   std::vector<std::string> names;
   for (const ShownLayer& layer : result.around.layers) names.push_back(layer.name);
   if (!names.empty() && !files.viewer.empty()) page += layer_sliders(names);

@@ -45,9 +45,12 @@ LinearProgramme programme_of(std::span<const double> flux_lm, std::span<const Di
   return p;
 }
 
-bool is_enough(const DimTarget& t, std::span<const double> level) {
-  const std::vector<double> lux = dimmed(t, level);
-  return (t.of_minimum ? std::ranges::min(lux) : mean_of(lux)) >= t.lux * (1 - 1e-9);
+/// Illuminance of the sensors at these levels [lx], S values.
+std::vector<double> dimmed(const DimTarget& t, std::span<const double> level) {
+  std::vector<double> lux = t.given;
+  for (std::size_t k = 0; k < level.size(); ++k)
+    for (std::size_t s = 0; s < lux.size(); ++s) lux[s] += level[k] * t.of_layer[k][s];
+  return lux;
 }
 
 /// Least over mean of the worst grid.
@@ -62,11 +65,9 @@ double uniformity_of(std::span<const DimTarget> targets, std::span<const double>
 
 }  // namespace
 
-std::vector<double> dimmed(const DimTarget& t, std::span<const double> level) {
-  std::vector<double> lux = t.given;
-  for (std::size_t k = 0; k < level.size(); ++k)
-    for (std::size_t s = 0; s < lux.size(); ++s) lux[s] += level[k] * t.of_layer[k][s];
-  return lux;
+double light_at(const DimTarget& t, std::span<const double> level) {
+  const std::vector<double> lux = dimmed(t, level);
+  return t.of_minimum ? std::ranges::min(lux) : mean_of(lux);
 }
 
 DimLevels dim_to_target(std::span<const double> flux_lm, std::span<const DimTarget> targets,
@@ -75,7 +76,8 @@ DimLevels dim_to_target(std::span<const double> flux_lm, std::span<const DimTarg
   DimLevels found;
   // Light only adds: what all lamps together do not reach, none of them do.
   found.level.assign(flux_lm.size(), most);
-  if (!std::ranges::all_of(targets, [&](const DimTarget& t) { return is_enough(t, found.level); })) {
+  if (!std::ranges::all_of(targets,
+                           [&](const DimTarget& t) { return light_at(t, found.level) >= t.lux * (1 - 1e-9); })) {
     found.outcome = DimLevels::Outcome::too_dark;
     return found;
   }

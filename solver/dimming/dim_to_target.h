@@ -36,7 +36,7 @@ struct DimLevels {
 DimLevels dim_to_target(std::span<const double> flux_lm, std::span<const DimTarget> targets,
                         std::optional<double> uniformity = {}, double most = 1);
 
-/// Illuminance of the sensors of the target at these levels [lx], S values.
-std::vector<double> dimmed(const DimTarget& target, std::span<const double> level);
+/// What the target is of, the mean of its sensors or the least of them, at these levels [lx].
+double light_at(const DimTarget& target, std::span<const double> level);
 
 }  // namespace clerestory

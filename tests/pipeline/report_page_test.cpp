@@ -142,6 +142,9 @@ TEST(ReportPage, HasASliderALayerAndWhatItMoves) {
   for (const char* words : {"id=\"layers\"", "name=\"lamps\" min=\"0\"", "name=\"sky\" min=\"0\"", "data-plan=\"1\"",
                             "id=\"plan-1-light\"", "\"name\":\"desk\",\"columns\":5,\"rows\":4,\"set\":0"})
     EXPECT_EQ(times(words, page), 1u) << words;
+  EXPECT_EQ(times("This light was mixed", page), 0u);
+  r.around.layers[1].factor = 0.25;
+  EXPECT_EQ(times("This light was mixed. Of what was solved it has sky at 25.0 %.", page_of(r)), 1u);
 }
 
 TEST(ReportPage, AsksForNothingThatIsElsewhere) {

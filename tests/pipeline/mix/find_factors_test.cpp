@@ -82,16 +82,17 @@ TEST(FindFactors, SkyAloneAboveTheTargetLeavesLampsOff) {
 TEST(FindFactors, SaysTheBestThatCanBeHad) {
   const WrittenResult r = lit_desk({{"lamp", {300, 500}}, {"sky", {0, 24}}});
   EXPECT_EQ(refusal(r, kDesk500),
-            "office.vtp: --target desk=500 cannot be reached: lamp at 1 gives a mean of 412.0 lx; ask for less, or "
+            "office.vtp: --target 'desk'=500 cannot be reached: 'lamp' at 1 gives a mean of 412.0 lx; ask for less, or "
             "allow more "
             "with --max.");
   EXPECT_EQ(refusal(r, {.targets = {{"desk", 500}}, .most = 1.3}), "");
-  EXPECT_NE(refusal(r, {.targets = {{"desk", 350, true}}}).find("lamp at 1 gives at least 300.0 lx"), std::string::npos)
+  EXPECT_NE(refusal(r, {.targets = {{"desk", 350, true}}}).find("'lamp' at 1 gives at least 300.0 lx"),
+            std::string::npos)
       << refusal(r, {.targets = {{"desk", 350, true}}});
   // The sky helps the brighter sensor only, so the more of the lamp the better: 300 / 412 in full.
   const std::string uneven = refusal(r, {.targets = {{"desk", 200}}, .uniformity = 0.8});
   EXPECT_NE(uneven.find("--uniformity 0.8 cannot be reached"), std::string::npos) << uneven;
-  EXPECT_NE(uneven.find("is 0.728 (at factors lamp="), std::string::npos) << uneven;
+  EXPECT_NE(uneven.find("is 0.728 (at factors 'lamp'="), std::string::npos) << uneven;
 }
 
 TEST(FindFactors, RefusesWhatIsNotThere) {
@@ -101,6 +102,10 @@ TEST(FindFactors, RefusesWhatIsNotThere) {
   EXPECT_NE(refusal(lit_desk({{"sky", {400, 400}}, {"sun", {1, 1}}}), kDesk500).find("sky and sun cannot be dimmed"),
             std::string::npos);
   WrittenResult bare = r;
+  bare.around.sensors.push_back(bare.around.sensors[0]);
+  bare.around.sensors[1].set.name = "front, rear";
+  EXPECT_NE(refusal(bare, {.targets = {{"window", 500}}}).find("known are 'desk', 'front, rear'."), std::string::npos)
+      << "names that have a comma can be told apart";
   bare.around.sensors.clear();
   EXPECT_NE(refusal(bare, kDesk500).find("has no sensors"), std::string::npos);
   bare.around.layers.clear();

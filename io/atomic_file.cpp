@@ -13,6 +13,7 @@
 #include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/random.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -335,6 +336,17 @@ void Outputs::commit() {
 }
 
 void check_writable(const fs::path& destination) { AtomicFile{destination}; }
+
+void require_open_files(std::size_t count, const std::string& what) {
+  constexpr rlim_t kOthers = 32;  // standard streams, the log, files of libraries
+  const rlim_t needed = static_cast<rlim_t>(count) + kOthers;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return;
+  limit.rlim_cur = needed;
+  if (limit.rlim_max < needed || ::setrlimit(RLIMIT_NOFILE, &limit) != 0)
+    throw InputError(text(what, ": ", count, " files are written together, and ", limit.rlim_max,
+                          " may be open at once (ulimit -n); ask for fewer, or raise the limit"));
+}
 
 void write_file(const fs::path& destination, std::string_view content) {
   AtomicFile file(destination);

@@ -1,6 +1,7 @@
 #pragma once
 // Files that appear whole or not at all, one alone or several together.
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -79,6 +80,11 @@ std::filesystem::path written_place(const std::filesystem::path& destination);
 
 /// throws  InputError when `destination` could not be written; call it before a long computation.
 void check_writable(const std::filesystem::path& destination);
+
+/// Raises the limit of open files of this process (`ulimit -n`) where so many more do not fit: Outputs are open
+/// together. what    "--times", for messages. throws  InputError when it cannot be raised that far; call it before a
+/// long computation.
+void require_open_files(std::size_t count, const std::string& what);
 
 /// throws  InputError when the disk is full or the place is not writable; the old file is untouched then.
 void write_file(const std::filesystem::path& destination, std::string_view content);

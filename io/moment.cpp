@@ -13,7 +13,7 @@ namespace clerestory {
 namespace {
 
 using Seconds = std::chrono::sys_seconds;
-constexpr long long kMostTimes = 1'000;
+constexpr long long kMostTimes = 200;  // elements and rays grow with their number, the cost with its square
 
 bool has_shape(std::string_view s, std::string_view shape) {
   if (s.size() != shape.size()) return false;
@@ -118,7 +118,8 @@ std::vector<Moment> read_times(const std::string& series, const std::string& wha
   if (stop < start) throw InputError(text(who, " ends before it begins; ", kExample));
   const long long count = (stop - start) / *duration + 1;
   if (count > kMostTimes)
-    throw InputError(text(who, " has ", count, " times; at most ", kMostTimes, ": take a longer step or less time"));
+    throw InputError(text(who, " has ", count, " times; at most ", kMostTimes, ": take a longer step or less ",
+                          "time, or clerestory annual for a year"));
   std::vector<Moment> times;
   for (long long k = 0; k < count; ++k) times.push_back(moment_of(start + k * *duration));
   return times;

@@ -24,7 +24,7 @@ double hours_since(const Moment& first, const Moment& moment);
 /// is an ISO 8601 duration of days, hours, minutes and seconds, PT1H, PT1H30M, P1D.
 ///
 /// what    "--times", for messages.
-/// throws  InputError when it is none, ends before it begins, or has more than 1,000 times.
+/// throws  InputError when it is none, ends before it begins, or has more than 200 times.
 std::vector<Moment> read_times(const std::string& series, const std::string& what);
 
 }  // namespace clerestory

@@ -340,6 +340,7 @@ void require_light(const std::map<std::string, WrittenArray>& of_points, const s
 
 WrittenResult read_result(const std::filesystem::path& file) {
   check_input_file(file, kMaxBytes);
+  if (file.extension() == ".pvd") refuse(file, "is a series, which names the result of each time");
   const QuietVtk quiet;
   vtkNew<vtkXMLPolyDataReader> reader;
   if (!reader->CanReadFile(file.c_str())) refuse(file, "is no VTK PolyData");

@@ -179,7 +179,11 @@ ExitCode solve_command(const Arguments& arguments, Console& console) {
 
   end_without_result_after(arguments.solve.time_limit, console);
   ReadOptions read_options = arguments.read;
-  if (!arguments.times.empty()) read_options.times = read_times(arguments.times, "--times");
+  if (!arguments.times.empty()) {
+    constexpr std::size_t kBeside = 8;  // the series, sensors, the report, what --debug-output shows
+    read_options.times = read_times(arguments.times, "--times");
+    require_open_files(read_options.times.size() + kBeside, "--times");
+  }
   Scene scene = read_scene(arguments.input, read_options);
   if (!arguments.sensors.empty()) scene.sensors = {read_sensors(arguments.sensors)};
   console.has_read(scene.files);

@@ -285,8 +285,9 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   HierarchyOptions of_elements = options.elements;
   KeptTransport kept;
   if (!options.layers.empty() && !of_elements.keep) of_elements.keep = &kept;
-  HierarchicalSolution coarse =
-      hierarchical(problem, mesh, of_elements, monitor.within((1 - kShareOfField) * monitor.seconds_left()));
+  Monitor for_elements = monitor.within((1 - kShareOfField) * monitor.seconds_left());
+  if (problem.lights.times > 1) for_elements.has_result = {};  // the mean alone of several times is nothing to show
+  HierarchicalSolution coarse = hierarchical(problem, mesh, of_elements, for_elements);
   const Problem transport{coarse.elements, problem.rays, problem.lights};
   FieldOptions vertices = options.vertices;
   if (options.goes_on) {
@@ -304,6 +305,7 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
     transport_layers.delta_light = direct_layers(coarse.elements, of_elements.keep->direct, options.layers).delta_light;
     of_layers.emplace(options.layers, problem.patches.channels, layers.B);
     kept = {};
+    monitor.say_result();
   }
   const double share_of_later = monitor.has_deadline() ? share_for_later(transport, coarse.solution, mesh, options) : 0;
   const double left = monitor.seconds_left();

@@ -124,6 +124,18 @@ TEST(Interrupt, BeforeThereIsAResultTheProgramEndsAtOnceAndOldFilesStay) {
   }
 }
 
+TEST(Interrupt, ASeriesHasNoResultBeforeItsLightIsPartedAmongTheTimes) {
+  const TempFolder folder, elsewhere;
+  Program program({"solve", shipped_scene("office_march.json"), "-o", folder / "day.pvd", "--accuracy", "fine",
+                   "--times", "2026-03-21T06:00/20:00/PT1H", "--log", elsewhere / "log"});
+  ASSERT_TRUE(program.waits_for("] gather", elsewhere / "log"));  // a round for the mean light is all but done
+  program.signal(SIGINT);
+  const ProgramRun run = program.wait();
+  EXPECT_EQ(run.exit_code, 5) << run.err;
+  EXPECT_NE(run.err.find("interrupted before there was a result; nothing is written"), std::string::npos) << run.err;
+  EXPECT_EQ(folder.listing(), "");
+}
+
 TEST(Interrupt, ASecondOneEndsAtOnceAndRemovesTemporaryFiles) {
   // All is solved, and the program waits for somebody to read the pipe; beside it lies the table of the sensors.
   const TempFolder folder, elsewhere;

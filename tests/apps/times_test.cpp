@@ -74,6 +74,24 @@ TEST(TimesProgram, EachResultIsOneThatOtherCommandsTake) {
   EXPECT_EQ(run_program({"bake", noon, "-o", folder / "noon.ply"}).exit_code, 0);
   EXPECT_EQ(run_program({"report", noon, "-o", folder / "noon.html"}).exit_code, 0);
   EXPECT_NE(read_text(folder / "noon.html").find("2003-10-17T12:00"), std::string::npos);
+  const ProgramRun of_series = run_program({"report", folder / "day.pvd", "-o", folder / "day.html"});
+  EXPECT_EQ(of_series.exit_code, 3);
+  EXPECT_NE(of_series.err.find("day.pvd: is a series, which names the result of each time; give a .vtp"),
+            std::string::npos)
+      << of_series.err;
+}
+
+TEST(TimesProgram, ALimitOfOpenFilesIsRaisedOrToldBeforeTheSolve) {
+  const TempFolder folder;
+  const std::string solve = "; $CLERESTORY solve " + plane_scene(folder) + " --accuracy draft --max-element 10 -o " +
+                            (folder / "day.pvd") + " --times 2003-10-17T10:00/11:00/PT1M";
+  const ProgramRun refused = run_by_shell("ulimit -n 64" + solve);
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("--times: 69 files are written together, and 64 may be open at once (ulimit -n)"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(run_by_shell("ulimit -S -n 64" + solve).exit_code, 0);
+  EXPECT_TRUE(std::ifstream(folder / "day.2003-10-17T1100.vtp").good());
 }
 
 TEST(TimesProgram, WrongUsageAndWhatCannotBeReadIsRefused) {

@@ -37,7 +37,7 @@ TEST(SeriesOfTimes, GoesOverMidnightAndMonthsAndLeapDays) {
   EXPECT_EQ(series("2026-12-31T22:00/2027-01-01T02:00/PT2H"),
             (Names{"2026-12-31T22:00", "2027-01-01T00:00", "2027-01-01T02:00"}));
   EXPECT_EQ(series("2028-02-28T12:00/2028-03-01T12:00/P1D").at(1), "2028-02-29T12:00");
-  EXPECT_EQ(series("2026-01-01T12:00/2026-12-31T12:00/P1D").size(), 365u);
+  EXPECT_EQ(series("2026-01-01T12:00/2026-12-31T12:00/P7D").size(), 53u);
   EXPECT_EQ(series("2026-01-01T00:00/2026-01-03T00:00/P1DT1H30M").at(1), "2026-01-02T01:30");
 }
 
@@ -59,7 +59,7 @@ TEST(SeriesOfTimes, IsRefusedWithWhatIsWrong) {
   EXPECT_NE(refusal("2026-03-21T06:00/25:00/PT1H").find("does not exist"), std::string::npos);
   EXPECT_NE(refusal("2026-03-21T06:00/05:00/PT1H").find("ends before it begins"), std::string::npos);
   EXPECT_NE(refusal("2026-03-21T06:00/20:00/PT0H").find("a step of 0 comes to no end; write PT1H"), std::string::npos);
-  EXPECT_NE(refusal("2026-03-21T06:00/20:00/PT1S").find("has 50401 times; at most 1000: take a longer step"),
+  EXPECT_NE(refusal("2026-03-21T06:00/20:00/PT1S").find("has 50401 times; at most 200: take a longer step"),
             std::string::npos);
   for (const std::string step :
        {"1H", "PT", "P", "", "PT1", "P1H", "PT1D", "PT1.5H", "PT-1H", "PT1H ", "P1DT", "PT1M1H"})

@@ -36,6 +36,8 @@ std::string reason(int error) {
       return "the disk quota is used up";
     case EFBIG:
       return "it grows beyond the largest file that is allowed (ulimit -f)";
+    case EMFILE:
+      return "more files are open at once than is allowed (ulimit -Hn)";
     default:
       return std::strerror(error);
   }

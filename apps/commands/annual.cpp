@@ -79,7 +79,7 @@ class SeriesOutputs {
     for (std::size_t begin = s.begin, end; begin < s.end && honeybee_; begin = end) {
       const auto grid = static_cast<std::size_t>(std::ranges::upper_bound(ends_, begin) - ends_.begin());
       end = std::min(s.end, ends_[grid]);
-      honeybee_->add(grid, 0, 0, s.total.subspan((begin - s.begin) * H, (end - begin) * H),
+      honeybee_->add(grid, s.total.subspan((begin - s.begin) * H, (end - begin) * H),
                      s.direct.subspan((begin - s.begin) * H, (end - begin) * H));
     }
   }

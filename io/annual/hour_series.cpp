@@ -4,7 +4,7 @@
 
 #include "io/annual/hdf5_series.h"
 #include "io/annual/npy_file.h"
-#include "io/annual/output_folder.h"
+#include "io/output_folder.h"
 #include "io/text.h"
 
 namespace clerestory {

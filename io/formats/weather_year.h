@@ -12,7 +12,7 @@ inline constexpr double kMostMissing = 0.01;
 /// Each hour is made as a scene file's "weather" makes one: the sun at the middle of the hour's part in which it is up,
 /// Perez' sky, the file's illuminances or, where it has none, those of Perez' efficacies. Hours without radiation are
 /// dark, up to kMostMissing of those with the sun up. 29 February is left out. Both, and derived illuminances, go into
-/// `warnings`, and what Weather warns of.
+/// `warnings`, and what Weather warns of, and direct light of hours without the sun where it is more than 1 % of all.
 ///
 /// place               where the sun is computed for.
 /// north_deg           of the scene's north, clockwise from +y.

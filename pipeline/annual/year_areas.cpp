@@ -32,8 +32,7 @@ void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::sp
   area.blinds.resize(H);
   std::vector<std::vector<float>> taken(states.size() - 1, std::vector<float>(n));
   std::vector<float> steady(n);
-  std::vector<WindowGroup> groups;
-  for (const std::vector<float>& by_group : taken) groups.push_back({by_group, 0});
+  const std::vector<std::span<const float>> groups(taken.begin(), taken.end());
   for (std::size_t h = 0; h < H; ++h) {
     bool any = false;
     for (std::size_t p = 0; p < n; ++p) {

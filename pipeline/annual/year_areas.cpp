@@ -84,6 +84,7 @@ std::vector<YearArea> grids_of(const std::vector<SensorSet>& sets) {
   for (const SensorSet& set : sets) {
     YearArea& grid = grids.emplace_back();
     grid.name = set.name, grid.number = static_cast<std::uint32_t>(grids.size() - 1);
+    grid.has_area = set.area_of_point.has_value();
     for (std::size_t k = 0; k < set.points.size(); ++k) {
       grid.points.push_back(next++);
       grid.weight.push_back(set.area_of_point.value_or(1));

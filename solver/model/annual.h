@@ -49,7 +49,7 @@ inline constexpr double kLeedAse = 10;  ///< an ASE above it is to be explained 
 
 /// A room or a grid.
 struct AreaYear {
-  double area = 0;            ///< [m2], or whatever the weights are
+  double area = 0;            ///< [m2]; the number of points where their areas are not known
   ShareWithin sDA;            ///< area with DA >= 50 %
   ShareWithin ASE_more_than;  ///< area with direct sun in more than 250 hours
   ShareWithin ASE_at_least;   ///< area with direct sun in 250 hours or more
@@ -76,19 +76,20 @@ struct AreaOfYear {
   std::size_t points = 0;
   AreaYear year;
   BlindsYear blinds;
+  bool has_area = true;  ///< the areas that its points stand for are known
 };
 
 /// What the figures of a year were made with, and of.
 struct AnnualReport {
   std::string scene, weather, city;  ///< names of files, and of the place
   double latitude_deg = 0, longitude_deg = 0, timezone = 0;
-  std::string schedule;                      ///< as it was asked for, "8-18"
-  int occupied_hours = 0;                    ///< of the year
-  int lit_hours = 0;                         ///< with light outdoors
-  int missing_hours = 0;                     ///< of the weather file, taken as dark
-  double threshold = 300;                    ///< of DA, cDA and sDA [lx]
-  bool blinds_operated = false;              ///< the model has blinds, and sDA and the others but ASE are with them
-  YearError error_rooms, error_grids;        ///< that the intervals go by
+  std::string schedule;                ///< as it was asked for, "8-18"
+  int occupied_hours = 0;              ///< of the year
+  int lit_hours = 0;                   ///< with light outdoors
+  int missing_hours = 0;               ///< of the weather file, taken as dark
+  double threshold = 300;              ///< of DA, cDA and sDA [lx]
+  bool blinds_operated = false;        ///< the model has blinds, and sDA and the others but ASE are with them
+  YearError error_rooms, error_grids;  ///< that the intervals go by
   std::vector<AreaOfYear> rooms, grids;
 };
 

@@ -110,6 +110,13 @@ TEST(AnnualReport, TellsFiguresWithTheirIntervalsAndTheRulesInForce) {
   EXPECT_EQ(r["hours_not_complying"], 4);
 }
 
+TEST(AnnualReport, TheAreaOfPointsThatStandForNoneIsNotKnown) {
+  AnnualReport report;
+  report.grids = {room()};
+  report.grids[0].has_area = false;
+  EXPECT_TRUE(Json::parse(annual_json(report))["grids"][0]["area"].is_null());
+}
+
 TEST(AnnualReport, LeavesLeedOutAtAnotherThreshold) {
   AnnualReport report;
   report.threshold = 500;
@@ -218,13 +225,11 @@ TEST(HourSeries, ThatCannotBeWrittenIsRefused) {
 TEST(HoneybeeFolder, HoldsWhatLadybugToolsRead) {
   const TempFolder folder;
   const fs::path out = folder / "results";
-  const HoneybeeLightPath south{"south", {"0_south", "1_south"}};
-  HoneybeeFolder results(out, kHours, {{"desk", 3}, {"R2/a b", 1, {kStaticApertures, south}}, {"r2_a_b", 0}});
+  HoneybeeFolder results(out, kHours, {{"desk", 3}, {"R2/a b", 1}, {"r2_a_b", 0}});
   const std::span<const float> total(kTotal), direct(kDirect);
-  results.add(0, 0, 0, total.first(4), direct.first(4));
-  results.add(0, 0, 0, total.last(8), direct.last(8));
-  results.add(1, 0, 0, total.first(4), direct.first(4));
-  for (const std::size_t state : {0u, 1u}) results.add(1, 1, state, total.last(4), direct.last(4));
+  results.add(0, total.first(4), direct.first(4));
+  results.add(0, total.last(8), direct.last(8));
+  results.add(1, total.last(4), direct.last(4));
   EXPECT_FALSE(fs::exists(out / "grids_info.json"));
   const HoneybeeMetrics one{{12.345}, {20}, {30}, {40}, {30}},
       three{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
@@ -232,7 +237,7 @@ TEST(HoneybeeFolder, HoldsWhatLadybugToolsRead) {
 
   EXPECT_EQ(Npy(out / "__static_apertures__/default/total/desk.npy").values<float>(), kTotal);
   EXPECT_EQ(Npy(out / "__static_apertures__/default/direct/desk.npy").values<float>(), kDirect);
-  EXPECT_EQ(Npy(out / "south/1_south/total/R2_a_b.npy").values<float>(),
+  EXPECT_EQ(Npy(out / "__static_apertures__/default/total/R2_a_b.npy").values<float>(),
             std::vector<float>(kTotal.end() - 4, kTotal.end()));
   EXPECT_EQ(read_text(out / "sun-up-hours.txt"), "7.5\n12.5\n4000.5\n8759.5\n");
   const Json study = Json::parse(read_text(out / "study_info.json"));
@@ -251,11 +256,15 @@ TEST(HoneybeeFolder, HoldsWhatLadybugToolsRead) {
   EXPECT_EQ(info[1]["full_id"], "R2_a_b");
   EXPECT_EQ(info[2]["full_id"], "r2_a_b_2") << "file systems that know no capitals";
   const Json states = Json::parse(read_text(out / "grid_states.json"));
-  EXPECT_EQ(states["R2_a_b"]["south"], (Json{"0_south", "1_south"}));
-  EXPECT_TRUE(states["desk"].empty());
+  EXPECT_EQ(states, (Json{{"desk", Json::object()}, {"R2_a_b", Json::object()}, {"r2_a_b_2", Json::object()}}));
   EXPECT_EQ(read_text(out / "metrics/da/R2_a_b.da"), "12.35\n");
   EXPECT_EQ(read_text(out / "metrics/udi_lower/desk.udi"), "1.00\n2.00\n3.00\n");
   EXPECT_EQ(Json::parse(read_text(out / "metrics/udi_upper/grids_info.json")), info);
+
+  // A run that does not come to its end leaves all of it.
+  HoneybeeFolder(out, kHours, {{"desk", 1}}).add(0, total.first(4), direct.first(4));
+  EXPECT_EQ(Json::parse(read_text(out / "grids_info.json")), info);
+  EXPECT_EQ(Npy(out / "__static_apertures__/default/total/desk.npy").values<float>(), kTotal);
 }
 
 }  // namespace

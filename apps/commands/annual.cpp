@@ -56,10 +56,10 @@ class SeriesOutputs {
       : sensors_(all_sensor_points(scene.sensors)) {
     std::vector<int> hours;
     for (const DaylightHour& h : year.hours) hours.push_back(h.hour);
-    const std::vector<SeriesPoints> sets{{"sensors", sensors_}};
     if (!arguments.hours.empty()) {
-      console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sets)) + " into " + arguments.hours);
-      hours_ = make_hour_series(arguments.hours, hours, sets);
+      console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sensors_.size())) + " into " +
+                   arguments.hours);
+      hours_ = make_hour_series(arguments.hours, hours, sensors_);
     }
     if (!arguments.honeybee.empty()) {
       std::vector<HoneybeeGrid> grids;
@@ -74,7 +74,7 @@ class SeriesOutputs {
 
   void take(const YearSeries& s) {
     if (!s.of_sensors) return;
-    if (hours_) hours_->add(0, s.total, s.direct);
+    if (hours_) hours_->add(s.total, s.direct);
     const std::size_t H = s.total.size() / std::max<std::size_t>(s.end - s.begin, 1);
     for (std::size_t begin = s.begin, end; begin < s.end && honeybee_; begin = end) {
       const auto grid = static_cast<std::size_t>(std::ranges::upper_bound(ends_, begin) - ends_.begin());

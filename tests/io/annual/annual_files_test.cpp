@@ -59,8 +59,8 @@ bool python_has(const std::string& library) {
 /// Adds the rows in two blocks.
 void fill(HourSeries& series) {
   const std::span<const float> total(kTotal), direct(kDirect);
-  series.add(0, total.first(8), direct.first(8));
-  series.add(0, total.last(4), direct.last(4));
+  series.add(total.first(8), direct.first(8));
+  series.add(total.last(4), direct.last(4));
 }
 
 AreaOfYear room() {
@@ -144,7 +144,7 @@ TEST(NpyFile, HeaderSaysTypeAndShape) {
 
 TEST(HourSeries, AsAFolderHasOneArrayAFile) {
   const TempFolder folder;
-  const auto series = make_hour_series(folder / "hours", kHours, {{"sensors", kPoints}});
+  const auto series = make_hour_series(folder / "hours", kHours, kPoints);
   fill(*series);
   for (const char* file : {"hour.npy", "sensors/position.npy", "sensors/normal.npy", "sensors/total.npy"})
     EXPECT_FALSE(fs::exists(folder / (std::string("hours/") + file))) << file << " before all is whole";
@@ -162,7 +162,7 @@ TEST(HourSeries, AsAFolderHasOneArrayAFile) {
 TEST(HourSeries, AsAFolderIsReadByNumPy) {
   if (!python_has("numpy")) GTEST_SKIP() << "no NumPy";
   const TempFolder folder;
-  const auto series = make_hour_series(folder / "hours", kHours, {{"sensors", kPoints}});
+  const auto series = make_hour_series(folder / "hours", kHours, kPoints);
   fill(*series);
   series->commit();
   const std::string script = "import numpy as n; d = '" + (folder / "hours") +
@@ -176,10 +176,9 @@ TEST(HourSeries, AsAFolderIsReadByNumPy) {
 TEST(HourSeries, AsHdf5HasTheSameArraysAndTheSameBytesEachTime) {
   const TempFolder folder;
   for (const char* name : {"a.h5", "b.hdf5"}) {
-    const auto series = make_hour_series(folder / name, kHours, {{"sensors", kPoints}, {"vertices", kPoints}});
+    const auto series = make_hour_series(folder / name, kHours, kPoints);
     fill(*series);
     EXPECT_FALSE(fs::exists(folder / name)) << "before it is whole";
-    series->add(1, kDirect, kTotal);
     series->commit();
   }
   const std::string bytes = read_text(folder / "a.h5");
@@ -194,7 +193,7 @@ TEST(HourSeries, AsHdf5HasTheSameArraysAndTheSameBytesEachTime) {
 TEST(HourSeries, AsHdf5IsReadByItsOwnTools) {
   if (std::system("h5dump --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no h5dump";
   const TempFolder folder;
-  auto series = make_hour_series(folder / "a.h5", kHours, {{"sensors", kPoints}});
+  auto series = make_hour_series(folder / "a.h5", kHours, kPoints);
   fill(*series);
   series->commit();
   series.reset();  // it holds a lock on the file
@@ -209,7 +208,7 @@ TEST(HourSeries, AsHdf5IsReadByItsOwnTools) {
 TEST(HourSeries, ThatIsNotFinishedLeavesWhatWasThere) {
   const TempFolder folder;
   folder.write("a.h5", "old");
-  fill(*make_hour_series(folder / "a.h5", kHours, {{"sensors", kPoints}}));
+  fill(*make_hour_series(folder / "a.h5", kHours, kPoints));
   EXPECT_EQ(read_text(folder / "a.h5"), "old");
   EXPECT_EQ(folder.listing(), "a.h5 ");
 }
@@ -219,7 +218,7 @@ TEST(HourSeries, ThatCannotBeWrittenIsRefused) {
   folder.write("file", "x");
   EXPECT_THROW(make_hour_series(folder / "file", kHours, {}), InputError);
   EXPECT_THROW(make_hour_series(folder / "none/a.h5", kHours, {}), InputError);
-  EXPECT_EQ(bytes_of_series(4000, {{"sensors", kPoints}}), 3 * (8 * 4000 + 48u));
+  EXPECT_EQ(bytes_of_series(4000, 3), 3 * (8 * 4000 + 48u));
 }
 
 TEST(HoneybeeFolder, HoldsWhatLadybugToolsRead) {

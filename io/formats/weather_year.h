@@ -18,7 +18,7 @@ inline constexpr double kMostMissing = 0.01;
 /// north_deg           of the scene's north, clockwise from +y.
 /// ground_reflectance  of the virtual ground, [0, 1].
 /// throws  InputError naming file and lines: hours that are there twice (several years), too many missing, no
-/// radiation. 0.1 s.
+/// radiation. 0.2 s.
 DaylightYear daylight_year(const Weather& weather, const Place& place, double north_deg, double ground_reflectance);
 
 }  // namespace clerestory

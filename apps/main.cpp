@@ -5,6 +5,7 @@
 #include <new>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "apps/command_line.h"
@@ -19,6 +20,14 @@ namespace {
 void open_standard_files() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(number, F_GETFD) < 0) ::open("/dev/null", number == STDIN_FILENO ? O_RDONLY : O_WRONLY);
+}
+
+/// As many files at once as the system allows: a folder of results has all of its files open until they are whole.
+void allow_many_files() {
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &files);
 }
 
 /// What is thrown where nobody can catch it, as by a thread that a library makes.
@@ -44,6 +53,7 @@ void open_standard_files() {
 int main(int argc, char** argv) {
   using namespace clerestory;
   open_standard_files();
+  allow_many_files();
   std::set_terminate(on_terminate);
   const auto asked = read_command_line(argc, argv);
   const Task* task = std::get_if<Task>(&asked);

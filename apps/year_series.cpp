@@ -12,10 +12,9 @@ YearSeriesFiles::YearSeriesFiles(const std::string& hours_place, const std::stri
     : sensors_(all_sensor_points(scene.sensors)) {
   std::vector<int> hours;
   for (const DaylightHour& h : year.hours) hours.push_back(h.hour);
-  const std::vector<SeriesPoints> sets{{"sensors", sensors_}};
   if (!hours_place.empty()) {
-    console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sets)) + " into " + hours_place);
-    hours_ = make_hour_series(hours_place, hours, sets);
+    console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sensors_.size())) + " into " + hours_place);
+    hours_ = make_hour_series(hours_place, hours, sensors_);
   }
   if (!honeybee_place.empty()) {
     std::vector<HoneybeeGrid> grids;
@@ -28,12 +27,12 @@ YearSeriesFiles::YearSeriesFiles(const std::string& hours_place, const std::stri
 }
 
 void YearSeriesFiles::take(const SensorSeries& s) {
-  if (hours_) hours_->add(0, s.total, s.direct);
+  if (hours_) hours_->add(s.total, s.direct);
   const std::size_t H = s.total.size() / std::max<std::size_t>(s.end - s.begin, 1);
   for (std::size_t begin = s.begin, end; begin < s.end && honeybee_; begin = end) {
     const auto grid = static_cast<std::size_t>(std::ranges::upper_bound(ends_, begin) - ends_.begin());
     end = std::min(s.end, ends_[grid]);
-    honeybee_->add(grid, 0, 0, s.total.subspan((begin - s.begin) * H, (end - begin) * H),
+    honeybee_->add(grid, s.total.subspan((begin - s.begin) * H, (end - begin) * H),
                    s.direct.subspan((begin - s.begin) * H, (end - begin) * H));
   }
 }

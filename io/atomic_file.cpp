@@ -37,13 +37,15 @@ std::string reason(int error) {
       return "the disk quota is used up";
     case EFBIG:
       return "it grows beyond the largest file that is allowed (ulimit -f)";
+    case EMFILE:
+      return "more files are open at once than is allowed (ulimit -Hn)";
     default:
       return std::strerror(error);
   }
 }
 
 // The only state of io that outlives a call: a signal handler can reach nothing else.
-std::array<std::atomic<char*>, 64> temporaries{};
+std::array<std::atomic<char*>, 1 << 14> temporaries{};
 std::atomic<int> renames{0};
 static_assert(std::atomic<char*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
@@ -54,7 +56,7 @@ int note_temporary(const fs::path& file) {
     if (temporaries[i].compare_exchange_strong(empty, name)) return static_cast<int>(i);
   }
   std::free(name);
-  return -1;  // more than 64 at once: a killed run leaves them to the next one
+  return -1;  // more than that at once: a killed run leaves them to the next one
 }
 
 void forget_temporary(int slot) {

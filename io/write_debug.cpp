@@ -1,14 +1,12 @@
 #include "io/write_debug.h"
 
-#include <system_error>
-
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkPolyData.h>
 
 #include "io/atomic_file.h"
+#include "io/output_folder.h"
 #include "io/vtp_file.h"
-#include "solver/model/error.h"
 
 namespace clerestory {
 namespace {
@@ -43,11 +41,7 @@ std::array<std::filesystem::path, 4> debug_files(const std::filesystem::path& fo
 }
 
 void check_debug_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError(folder.string() + ": cannot be made: " + error.message() +
-                     "; choose another place for this output.");
+  make_folder(folder);
   for (const auto& file : debug_files(folder)) check_writable(file);
 }
 

@@ -129,7 +129,12 @@ std::string not_of_a_part(const Arguments& arguments) {
 }
 
 std::string results_of(const Arguments& arguments, const YearSolved& solved) {
-  if (!arguments.part) return arguments.files.told(solved);
+  if (!arguments.part) {
+    std::string all = arguments.files.told(solved);
+    for (const std::string& series : {arguments.hours, arguments.honeybee})
+      if (!series.empty()) all += ", " + series;
+    return all;
+  }
   return arguments.files.output + ": part " + *arguments.part + ", " +
          counted(solved.part_of_points.end - solved.part_of_points.begin, "point") + " and " +
          counted(solved.part_of_sensors.end - solved.part_of_sensors.begin, "sensor") +

@@ -11,6 +11,7 @@
 #include "apps/run.h"
 #include "apps/sweep.h"
 #include "io/atomic_file.h"
+#include "io/output_folder.h"
 #include "io/picture/encode.h"
 #include "pipeline/lap.h"
 #include "pipeline/settings.h"
@@ -44,14 +45,6 @@ void check_folder(const fs::path& folder) {
   if (!fs::is_directory(folder, error))
     throw InputError("-o " + folder.string() + ": is a file; give a folder, which is made when there is none.");
   for (const char* file : kFiles) check_writable(folder / file);
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw InputError("-o " + folder.string() + ": cannot be made: " + error.message() +
-                     "; choose another place for it.");
 }
 
 /// What holds for every run, and may not be meant to.

@@ -40,7 +40,7 @@ Json leed(const AreaYear& year) {
 
 Json json_of(const AreaOfYear& area, bool is_300_lux) {
   const AreaYear& year = area.year;
-  Json json = {{"name", area.name}, {"area", year.area}, {"points", area.points}};
+  Json json = {{"name", area.name}, {"area", area.has_area ? Json(year.area) : Json()}, {"points", area.points}};
   add_share(json, "sDA", year.sDA);
   add_share(json, "ASE", year.ASE_more_than);
   json["ASE_at_least"] = {

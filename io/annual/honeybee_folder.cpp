@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/annual/output_folder.h"
+#include "io/output_folder.h"
 #include "io/text.h"
 #include "solver/model/annual.h"
 #include "solver/model/assert.h"
@@ -41,33 +41,30 @@ std::vector<std::string> ids_of(const std::vector<HoneybeeGrid>& grids) {
   return ids;
 }
 
-void write_json(const fs::path& file, const Json& json) {
-  write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+void write_json(AtomicFile& file, const Json& json) {
+  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
+
+/// All light is told as that of windows whose blinds do not move: it is with blinds as they stand.
+constexpr const char* kLightPath = "__static_apertures__";
 
 Json grids_info(const std::vector<HoneybeeGrid>& grids, const std::vector<std::string>& ids) {
   Json info = Json::array();
   for (std::size_t g = 0; g < grids.size(); ++g) {
-    Json paths = Json::array();
-    for (const HoneybeeLightPath& path : grids[g].light_paths) paths.push_back(Json::array({path.name}));
     info.push_back({{"name", grids[g].name},
                     {"identifier", ids[g]},
                     {"count", grids[g].points},
                     {"group", ""},
                     {"full_id", ids[g]},
-                    {"light_path", paths}});
+                    {"light_path", Json::array({Json::array({kLightPath})})}});
   }
   return info;
 }
 
-/// States of the windows with blinds.
-Json grid_states(const std::vector<HoneybeeGrid>& grids, const std::vector<std::string>& ids) {
+/// States of windows whose blinds move: none.
+Json grid_states(const std::vector<std::string>& ids) {
   Json states = Json::object();
-  for (std::size_t g = 0; g < grids.size(); ++g) {
-    states[ids[g]] = Json::object();
-    for (const HoneybeeLightPath& path : grids[g].light_paths)
-      if (path.name != kStaticApertures.name) states[ids[g]][path.name] = path.states;
-  }
+  for (const std::string& id : ids) states[id] = Json::object();
   return states;
 }
 
@@ -94,60 +91,54 @@ std::string column(const std::vector<double>& values) {
   return lines;
 }
 
+struct Metric {
+  const char *folder, *extension;
+  std::vector<double> HoneybeeMetrics::*values;
+};
+constexpr Metric kMetrics[] = {{"da", "da", &HoneybeeMetrics::da},
+                               {"cda", "cda", &HoneybeeMetrics::cda},
+                               {"udi", "udi", &HoneybeeMetrics::udi},
+                               {"udi_lower", "udi", &HoneybeeMetrics::udi_lower},
+                               {"udi_upper", "udi", &HoneybeeMetrics::udi_upper}};
+
 }  // namespace
 
-HoneybeeFolder::HoneybeeFolder(const fs::path& folder, std::span<const int> hours, std::vector<HoneybeeGrid> grids)
-    : folder_(folder), hours_(hours.size()), grids_(std::move(grids)), ids_(ids_of(grids_)) {
-  make_folder(folder_);
-  std::error_code none;
-  fs::remove(folder_ / "grids_info.json", none);
-  write_file(folder_ / "sun-up-hours.txt", sun_up_hours(hours));
-  write_json(folder_ / "study_info.json", study_info());
-  write_json(folder_ / "grid_states.json", grid_states(grids_, ids_));
+HoneybeeFolder::HoneybeeFolder(const fs::path& folder, std::span<const int> hours, std::vector<HoneybeeGrid> grids) {
+  const std::vector<std::string> ids = ids_of(grids);
+  const Json info = grids_info(grids, ids);
+  const fs::path light = folder / kLightPath / "default";
+  for (const char* kind : {"total", "direct"}) make_folder(light / kind);
+  for (const Metric& metric : kMetrics) {
+    const fs::path own = folder / "metrics" / metric.folder;
+    make_folder(own);
+    write_json(files_.open(own / "grids_info.json"), info);
+  }
+  files_.open(folder / "sun-up-hours.txt").write(sun_up_hours(hours));
+  write_json(files_.open(folder / "study_info.json"), study_info());
+  write_json(files_.open(folder / "grid_states.json"), grid_states(ids));
+  for (std::size_t g = 0; g < grids.size(); ++g) {
+    const std::string file = ids[g] + ".npy";
+    total_.emplace_back(files_.open(light / "total" / file), grids[g].points, hours.size());
+    direct_.emplace_back(files_.open(light / "direct" / file), grids[g].points, hours.size());
+    for (const Metric& metric : kMetrics)
+      metrics_.push_back(&files_.open(folder / "metrics" / metric.folder / (ids[g] + "." + metric.extension)));
+  }
+  write_json(files_.open(folder / "grids_info.json"), info);  // the last to get its name
 }
 
-void HoneybeeFolder::add(std::size_t grid, std::size_t light_path, std::size_t state, std::span<const float> total,
-                         std::span<const float> direct) {
-  CLERESTORY_ASSERT(total.size(), ==, direct.size());
-  const HoneybeeLightPath& path = grids_[grid].light_paths[light_path];
-  std::unique_ptr<Rows>& rows = open_[{grid, light_path, state}];
-  const std::size_t points = grids_[grid].points;
-  if (!rows) {
-    const fs::path own = folder_ / path.name / path.states[state];
-    for (const char* kind : {"total", "direct"}) make_folder(own / kind);
-    rows = std::make_unique<Rows>(own, ids_[grid] + ".npy", points, hours_);
-  }
-  rows->total.add(total);
-  rows->direct.add(direct);
-  rows->missing -= total.size() / hours_;
-  if (rows->missing > 0) return;
-  rows->total.end(), rows->direct.end();
-  rows->total_file.commit();
-  rows->direct_file.commit();
-  open_.erase({grid, light_path, state});
+void HoneybeeFolder::add(std::size_t grid, std::span<const float> total, std::span<const float> direct) {
+  total_[grid].add(total);
+  direct_[grid].add(direct);
 }
 
 void HoneybeeFolder::commit(std::span<const HoneybeeMetrics> metrics) {
-  CLERESTORY_ASSERT(open_.size(), ==, std::size_t{0});
-  CLERESTORY_ASSERT(metrics.size(), ==, grids_.size());
-  struct Metric {
-    const char *folder, *extension;
-    std::vector<double> HoneybeeMetrics::*values;
-  };
-  constexpr Metric kMetrics[] = {{"da", "da", &HoneybeeMetrics::da},
-                                 {"cda", "cda", &HoneybeeMetrics::cda},
-                                 {"udi", "udi", &HoneybeeMetrics::udi},
-                                 {"udi_lower", "udi", &HoneybeeMetrics::udi_lower},
-                                 {"udi_upper", "udi", &HoneybeeMetrics::udi_upper}};
-  const Json info = grids_info(grids_, ids_);
-  for (const Metric& metric : kMetrics) {
-    const fs::path own = folder_ / "metrics" / metric.folder;
-    make_folder(own);
-    for (std::size_t g = 0; g < grids_.size(); ++g)
-      write_file(own / (ids_[g] + "." + metric.extension), column(metrics[g].*metric.values));
-    write_json(own / "grids_info.json", info);
+  CLERESTORY_ASSERT(metrics.size(), ==, total_.size());
+  auto file = metrics_.begin();
+  for (std::size_t g = 0; g < metrics.size(); ++g) {
+    total_[g].end(), direct_[g].end();
+    for (const Metric& metric : kMetrics) (*file++)->write(column(metrics[g].*metric.values));
   }
-  write_json(folder_ / "grids_info.json", info);
+  files_.commit();
 }
 
 }  // namespace clerestory

@@ -4,7 +4,7 @@
 
 #include "io/annual/hdf5_series.h"
 #include "io/annual/npy_file.h"
-#include "io/annual/output_folder.h"
+#include "io/output_folder.h"
 #include "io/text.h"
 
 namespace clerestory {
@@ -13,31 +13,32 @@ namespace {
 /// A folder of .npy files, which appear together.
 class NpySeries : public HourSeries {
  public:
-  NpySeries(const std::filesystem::path& folder, std::span<const int> hours, const std::vector<SeriesPoints>& sets) {
-    make_folder(folder);
+  NpySeries(const std::filesystem::path& folder, std::span<const int> hours, std::span<const SensorPoint> sensors)
+      : own_(made(folder / "sensors")),
+        total_(files_.open(own_ / "total.npy"), sensors.size(), hours.size()),
+        direct_(files_.open(own_ / "direct.npy"), sensors.size(), hours.size()) {
     write_npy(files_.open(folder / "hour.npy"), hours);
-    for (const SeriesPoints& set : sets) {
-      const std::filesystem::path own = folder / set.name;
-      make_folder(own);
-      write_npy(files_.open(own / "position.npy"), coordinates_of(set.points, &SensorPoint::position), 3);
-      write_npy(files_.open(own / "normal.npy"), coordinates_of(set.points, &SensorPoint::normal), 3);
-      total_.emplace_back(files_.open(own / "total.npy"), set.points.size(), hours.size());
-      direct_.emplace_back(files_.open(own / "direct.npy"), set.points.size(), hours.size());
-    }
+    write_npy(files_.open(own_ / "position.npy"), coordinates_of(sensors, &SensorPoint::position), 3);
+    write_npy(files_.open(own_ / "normal.npy"), coordinates_of(sensors, &SensorPoint::normal), 3);
   }
-  void add(std::size_t set, std::span<const float> total, std::span<const float> direct) override {
-    total_[set].add(total);
-    direct_[set].add(direct);
+  void add(std::span<const float> total, std::span<const float> direct) override {
+    total_.add(total);
+    direct_.add(direct);
   }
   void commit() override {
-    for (const std::vector<NpyRows>* arrays : {&total_, &direct_})
-      for (const NpyRows& rows : *arrays) rows.end();
+    total_.end(), direct_.end();
     files_.commit();
   }
 
  private:
+  static std::filesystem::path made(const std::filesystem::path& folder) {
+    make_folder(folder);
+    return folder;
+  }
+
+  std::filesystem::path own_;
   Outputs files_;
-  std::vector<NpyRows> total_, direct_;  ///< by set
+  NpyRows total_, direct_;
 };
 
 }  // namespace
@@ -50,16 +51,14 @@ std::vector<double> coordinates_of(std::span<const SensorPoint> points, Vec3 Sen
 }
 
 std::unique_ptr<HourSeries> make_hour_series(const std::filesystem::path& destination, std::span<const int> hours,
-                                             const std::vector<SeriesPoints>& sets) {
+                                             std::span<const SensorPoint> sensors) {
   const std::string extension = to_lower(destination.extension().string());
-  if (extension == ".h5" || extension == ".hdf5") return make_hdf5_series(destination, hours, sets);
-  return std::make_unique<NpySeries>(destination, hours, sets);
+  if (extension == ".h5" || extension == ".hdf5") return make_hdf5_series(destination, hours, sensors);
+  return std::make_unique<NpySeries>(destination, hours, sensors);
 }
 
-std::size_t bytes_of_series(std::size_t hours, const std::vector<SeriesPoints>& sets) {
-  std::size_t points = 0;
-  for (const SeriesPoints& set : sets) points += set.points.size();
-  return points * (2 * hours * sizeof(float) + 6 * sizeof(double));
+std::size_t bytes_of_series(std::size_t hours, std::size_t sensors) {
+  return sensors * (2 * hours * sizeof(float) + 6 * sizeof(double));
 }
 
 }  // namespace clerestory

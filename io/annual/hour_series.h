@@ -5,39 +5,32 @@
 #include <filesystem>
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "solver/model/sensors.h"
 
 namespace clerestory {
 
-/// Points that a series has rows for.
-struct SeriesPoints {
-  std::string name;  ///< "vertices", "sensors"; no slash
-  std::span<const SensorPoint> points;
-};
-
 /// A file or folder under construction. Until commit() nothing of it stands in the place of what was there.
 class HourSeries {
  public:
   virtual ~HourSeries() = default;
-  /// The next points of set `set`, in their order: rows of H illuminances of all light and of direct sun [lx].
+  /// The next sensors, in their order: rows of H illuminances of all light and of direct sun [lx].
   /// throws  InputError when the disk is full.
-  virtual void add(std::size_t set, std::span<const float> total, std::span<const float> direct) = 0;
-  /// All rows of all sets were given.
+  virtual void add(std::span<const float> total, std::span<const float> direct) = 0;
+  /// All rows were given.
   virtual void commit() = 0;
 };
 
 /// hours  H hours of the year, 0 to 8759, that the columns stand for; all others are dark.
 ///
-/// OUT.h5, .hdf5: one file of HDF5, /hour [H], and for each set /NAME/position and /NAME/normal [n x 3], /NAME/total
-/// and /NAME/direct [n x H] of floats. Anything else is a folder of NumPy's files, hour.npy, NAME/total.npy and so on.
+/// OUT.h5, .hdf5: one file of HDF5, /hour [H], and of n sensors /sensors/position and /sensors/normal [n x 3],
+/// /sensors/total and /sensors/direct [n x H] of floats. Anything else is a folder of NumPy's files, hour.npy,
+/// sensors/total.npy and so on.
 /// throws  InputError when it cannot be written there, or HDF5's module is not installed.
 std::unique_ptr<HourSeries> make_hour_series(const std::filesystem::path& destination, std::span<const int> hours,
-                                             const std::vector<SeriesPoints>& sets);
+                                             std::span<const SensorPoint> sensors);
 
 /// How many bytes it will have, to be said beforehand.
-std::size_t bytes_of_series(std::size_t hours, const std::vector<SeriesPoints>& sets);
+std::size_t bytes_of_series(std::size_t hours, std::size_t sensors);
 
 }  // namespace clerestory

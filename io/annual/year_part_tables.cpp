@@ -66,17 +66,31 @@ Json json_of(const std::vector<AreaOfYear>& areas) {
   for (const AreaOfYear& area : areas)
     json.push_back({{"name", area.name},
                     {"points", area.points},
+                    {"has_area", area.has_area},
                     {"hours_closed", area.blinds.hours_closed},
                     {"hours_not_complying", area.blinds.hours_not_complying}});
   return json;
 }
-std::vector<AreaOfYear> areas_of(const Json& json) {
+
+/// A whole number of [0, most].
+std::size_t whole(const Json& json, const char* name, std::size_t most, const WrittenResult& result) {
+  const Json& x = json.at(name);
+  if (!x.is_number_unsigned() || x.get<std::uint64_t>() > most)
+    refuse(result, text("its '", name, "' is no whole number of [0, ", most, "]"));
+  return x.get<std::size_t>();
+}
+int hours(const Json& json, const char* name, const WrittenResult& result) {
+  return static_cast<int>(whole(json, name, kHoursOfYear, result));
+}
+
+std::vector<AreaOfYear> areas_of(const Json& json, const WrittenResult& result) {
   std::vector<AreaOfYear> areas;
   for (const Json& a : json)
     areas.push_back({a.at("name").get<std::string>(),
-                     a.at("points").get<std::size_t>(),
+                     whole(a, "points", std::numeric_limits<std::uint32_t>::max(), result),
                      {},
-                     {a.at("hours_closed").get<int>(), a.at("hours_not_complying").get<int>()}});
+                     {hours(a, "hours_closed", result), hours(a, "hours_not_complying", result)},
+                     a.at("has_area").get<bool>()});
   return areas;
 }
 
@@ -101,9 +115,9 @@ Json json_of(const YearPart& part) {
           {"grids", json_of(f.grids)}};
 }
 
-void read_facts(const Json& json, YearPart& part) {
+void read_facts(const Json& json, const WrittenResult& result, YearPart& part) {
   AnnualReport& f = part.facts;
-  part.parts = json.at("parts").get<std::size_t>();
+  part.parts = whole(json, "parts", kMostParts, result);
   for (const Json& file : json.at("files"))
     part.files.push_back({file.at("name").get<std::string>(), file.at("digest").get<std::string>()});
   f.weather = json.at("weather").get<std::string>();
@@ -112,16 +126,16 @@ void read_facts(const Json& json, YearPart& part) {
   f.longitude_deg = json.at("place").at(1).get<double>();
   f.timezone = json.at("place").at(2).get<double>();
   f.schedule = json.at("schedule").get<std::string>();
-  f.occupied_hours = json.at("occupied_hours").get<int>();
-  f.lit_hours = json.at("lit_hours").get<int>();
-  f.missing_hours = json.at("missing_hours").get<int>();
+  f.occupied_hours = hours(json, "occupied_hours", result);
+  f.lit_hours = hours(json, "lit_hours", result);
+  f.missing_hours = hours(json, "missing_hours", result);
   f.threshold = json.at("threshold").get<double>();
   part.more_thresholds = json.at("more_thresholds").get<std::vector<double>>();
   f.blinds_operated = json.at("blinds_operated").get<bool>();
   double* const errors[] = {&f.error_rooms.total, &f.error_rooms.direct, &f.error_grids.total, &f.error_grids.direct};
   for (std::size_t k = 0; k < std::size(errors); ++k) *errors[k] = json.at("illuminance_error").at(k).get<double>();
-  f.rooms = areas_of(json.at("rooms"));
-  f.grids = areas_of(json.at("grids"));
+  f.rooms = areas_of(json.at("rooms"), result);
+  f.grids = areas_of(json.at("grids"), result);
 }
 
 /// The tables of a result, each checked for its size and the range of its numbers.
@@ -248,17 +262,15 @@ YearPart year_part_of(const WrittenResult& result) {
     throw InputError(result.file + ": is no part of a year; give the files that clerestory annual --part i/n wrote.");
   YearPart part;
   try {
-    read_facts(parse_json<Json>(result.year_part, result.file), part);
+    read_facts(parse_json<Json>(result.year_part, result.file), result, part);
   } catch (const nlohmann::json::exception& error) {
     refuse(result, quotable(error.what(), 100));
   }
   const Tables tables(result);
   const auto is_illuminance = [](double lux) { return lux > 0 && lux <= kMostNumber; };
-  if (part.facts.occupied_hours < 1 || part.facts.occupied_hours > static_cast<int>(kHoursOfYear) ||
-      part.more_thresholds.size() > kMostThresholds || !is_illuminance(part.facts.threshold) ||
-      !std::ranges::all_of(part.more_thresholds, is_illuminance))
+  if (part.facts.occupied_hours < 1 || part.more_thresholds.size() > kMostThresholds ||
+      !is_illuminance(part.facts.threshold) || !std::ranges::all_of(part.more_thresholds, is_illuminance))
     refuse(result, "its hours and thresholds");
-  if (part.parts > kMostParts) refuse(result, text("it is of ", part.parts, " parts, and the most are ", kMostParts));
   constexpr auto kAny = std::numeric_limits<std::uint32_t>::max();
   const std::vector<double>& place = tables.numbers(kPlace, 1, 3);
   part.part = tables.index(kPlace, place[0], kAny);

@@ -59,10 +59,10 @@ struct Line {
 
 /// Radiation [W/m2], nothing where it is missing; what else is wrong with it goes to `flaw`.
 std::optional<double> radiation(const Line& line, std::size_t column, std::string_view name, std::string& flaw) {
-  constexpr double kOffset = -50, kMissing = 9999, kMost = 1500;  // the sun outside the air gives 1367
+  constexpr double kOffset = -5, kMissing = 9999, kMost = 1500;  // the sun outside the air gives 1367
   if (line.cell(column).empty()) return std::nullopt;
   const std::optional<double> x = to_decimal(line.cell(column));
-  if (x && (*x <= kOffset || *x >= kMissing)) return std::nullopt;
+  if (x && (*x < kOffset || *x >= kMissing)) return std::nullopt;
   if (x && *x <= kMost) return std::max(*x, 0.0);
   flaw = x && !std::isnan(*x) ? text(name, " = ", *x, " is outside [0, ", kMost, "] W/m2")
                               : text(name, " = '", quotable(line.cell(column)), "' is not a number");

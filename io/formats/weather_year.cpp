@@ -8,23 +8,23 @@
 #include "io/formats/weather_light.h"
 #include "io/odd_place.h"
 #include "io/text.h"
+#include "solver/model/annual.h"
 #include "solver/model/error.h"
 
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kHours = 8760;
+using HoursByTime = std::array<const WeatherHour*, kHoursOfYear>;
 
-using HoursByTime = std::array<const WeatherHour*, kHours>;
+constexpr std::array<int, 12> kDaysOfMonth = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
 
 bool is_leap_day(const WeatherHour& h) { return h.month == 2 && h.day == 29; }
 
 /// In a year of 365 days; nothing for a date that does not exist.
 std::optional<std::size_t> hour_of_year(const WeatherHour& h) {
-  constexpr std::array<int, 12> kDays = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  if (h.month < 1 || h.hour < 1 || h.day > kDays[static_cast<std::size_t>(h.month - 1)]) return std::nullopt;
+  if (h.month < 1 || h.hour < 1 || h.day > kDaysOfMonth[static_cast<std::size_t>(h.month - 1)]) return std::nullopt;
   int days = h.day - 1;
-  for (int month = 1; month < h.month; ++month) days += kDays[static_cast<std::size_t>(month - 1)];
+  for (int month = 1; month < h.month; ++month) days += kDaysOfMonth[static_cast<std::size_t>(month - 1)];
   return static_cast<std::size_t>(days * 24 + h.hour - 1);
 }
 
@@ -53,11 +53,10 @@ HoursByTime hours_by_time(const Weather& weather, std::vector<std::string>& warn
 
 /// The middle of hour i's part with the sun up, in the year of the file's row or any.
 Moment moment_of(std::size_t i, const WeatherHour* row, const Place& place) {
-  constexpr std::array<int, 12> kDays = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   Moment moment;
   int day = static_cast<int>(i / 24);
   std::size_t month = 0;
-  for (; day >= kDays[month]; ++month) day -= kDays[month];
+  for (; day >= kDaysOfMonth[month]; ++month) day -= kDaysOfMonth[month];
   moment.month = static_cast<int>(month) + 1;
   moment.day = day + 1;
   if (row) moment.year = row->year;
@@ -95,6 +94,26 @@ void warn_of_distance(const Weather& weather, const Place& place, std::vector<st
                           " km from the scene's location, where the sun is computed for"));
 }
 
+/// Direct light [lx h] of the year, facing the sun, and of its hours in which the sun is down all the time.
+struct DirectLight {
+  double all = 0, by_night = 0;
+  int nights = 0;
+
+  void add(double lux, bool is_night) {
+    all += lux;
+    if (is_night && lux > 0) by_night += lux, ++nights;
+  }
+};
+
+/// A place, a time zone or hours of another convention move the sun against its light.
+void warn_of_night_sun(const Weather& weather, const DirectLight& direct, std::vector<std::string>& warnings) {
+  constexpr double kMuch = 0.01;
+  if (!(direct.by_night > kMuch * direct.all)) return;
+  warnings.push_back(text(weather.file, ": ", direct.nights, " hours have direct light while the sun is down, ",
+                          std::round(1000 * direct.by_night / direct.all) / 10,
+                          " % of the year's; it is left out. Are the location, and its timezone, those of the file?"));
+}
+
 void refuse_missing(const Weather& weather, const Found& missing, int sunny_hours) {
   if (missing.count == sunny_hours || (sunny_hours > 0 && missing.count > kMostMissing * sunny_hours)) {
     throw InputError(text(
@@ -112,8 +131,9 @@ DaylightYear daylight_year(const Weather& weather, const Place& place, double no
   warn_of_distance(weather, place, year.warnings);
   const HoursByTime by_time = hours_by_time(weather, year.warnings);
   Found missing, derived;
+  DirectLight direct;
   int sunny_hours = 0;
-  for (std::size_t i = 0; i < kHours; ++i) {
+  for (std::size_t i = 0; i < kHoursOfYear; ++i) {
     const WeatherHour* const row = by_time[i];
     const Moment moment = moment_of(i, row, place);
     const Horizontal stands = sun_position(place, moment);
@@ -132,6 +152,7 @@ DaylightYear daylight_year(const Weather& weather, const Place& place, double no
     const SkyMeasurement measured = measurement_of(light, to_sun, day_of_year(moment));
     if (const std::string why = add_illuminances(light, measured); !why.empty())
       derived.add(text(row->line, ": ", why));
+    direct.add(*light.direct_normal_lux, is_night);
     if (is_night) light.direct_normal_lux = 0;
     if (!(*light.direct_normal_lux > 0) && !(*light.diffuse_horizontal_lux > 0)) continue;
     Sky sky{.model = SkyModel::perez,
@@ -148,6 +169,7 @@ DaylightYear daylight_year(const Weather& weather, const Place& place, double no
                           .diffuse_horizontal_lux = *light.diffuse_horizontal_lux});
   }
   refuse_missing(weather, missing, sunny_hours);
+  warn_of_night_sun(weather, direct, year.warnings);
   if (year.hours.empty())
     throw InputError(text(weather.file, ": its radiation is 0 in all hours; take another weather file"));
   year.missing_hours = missing.count;

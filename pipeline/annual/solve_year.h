@@ -40,8 +40,9 @@ using TakeSeries = std::function<void(const SensorSeries&)>;
 /// A room (what faces up in it) or a grid of sensors.
 struct YearArea {
   std::string name;
-  std::vector<std::size_t> points;   ///< of the lightmap, or sensors
-  std::vector<double> weight;        ///< area that each stands for [m2]; of sensors 1, where it is not known
+  std::vector<std::size_t> points;  ///< of the lightmap, or sensors
+  std::vector<double> weight;       ///< area that each stands for [m2]; without has_area 1
+  bool has_area = true;
   std::vector<BlindsOfHour> blinds;  ///< H; empty without blinds
   BlindsYear closed;
   AreaYear figures;          ///< where all of its points are known

@@ -24,8 +24,7 @@ void operate_in(const std::vector<std::unique_ptr<WindowState>>& states, std::sp
   area.blinds.resize(H);
   std::vector<std::vector<float>> sun(states.size()), taken(groups, std::vector<float>(n));
   std::vector<float> steady(n);
-  std::vector<WindowGroup> windows;
-  for (const std::vector<float>& of_group : taken) windows.push_back({of_group, 0});
+  const std::vector<std::span<const float>> windows(taken.begin(), taken.end());
   for (std::size_t first = 0; first < H; first += kHours) {
     const std::size_t hours = std::min(kHours, H - first);
     for (std::vector<float>& of_state : sun) of_state.resize(n * hours);
@@ -84,7 +83,7 @@ std::vector<YearArea> grids_of(const std::vector<SensorSet>& sets) {
   std::size_t next = 0;
   for (const SensorSet& set : sets) {
     YearArea& grid = grids.emplace_back();
-    grid.name = set.name;
+    grid.name = set.name, grid.has_area = set.area_of_point.has_value();
     for (std::size_t k = 0; k < set.points.size(); ++k) {
       grid.points.push_back(next++);
       grid.weight.push_back(set.area_of_point.value_or(1));

@@ -24,14 +24,12 @@ std::vector<AreaPoints> points_of(const std::vector<YearArea>& areas) {
 
 std::vector<YearArea> areas_of(const std::vector<AreaPoints>& points, const std::vector<AreaOfYear>& facts) {
   std::vector<YearArea> areas;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    areas.push_back({facts[i].name,
-                     {points[i].points.begin(), points[i].points.end()},
-                     points[i].weight,
-                     {},
-                     facts[i].blinds,
-                     {},
-                     0});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    YearArea& area = areas.emplace_back();
+    area.name = facts[i].name, area.closed = facts[i].blinds, area.has_area = facts[i].has_area;
+    area.points.assign(points[i].points.begin(), points[i].points.end());
+    area.weight = points[i].weight;
+  }
   return areas;
 }
 
@@ -111,9 +109,9 @@ bool is_same_mesh(const WrittenResult& a, const WrittenResult& b) {
          a.year_part == b.year_part;
 }
 
-void put(const std::vector<PointYear>& from, std::size_t at, std::vector<PointYear>& to, std::size_t& known) {
+YearSolved::Range put(const std::vector<PointYear>& from, std::size_t at, std::vector<PointYear>& to) {
   std::ranges::copy(from, to.begin() + static_cast<std::ptrdiff_t>(at));
-  known += from.size();
+  return {at, at + from.size()};
 }
 
 }  // namespace
@@ -182,38 +180,42 @@ void YearMerge::require_same_run(const WrittenResult& result, const YearPart& pa
 }
 
 void YearMerge::add(WrittenResult result) {
-  YearPart part = year_part_of(result);
-  if (files_.empty()) {
+  const YearPart part = year_part_of(result);
+  const std::string file = result.file;
+  if (parts_.empty()) {
     if (result.of_cells.find("area") == result.of_cells.end() || result.of_cells.find("level") == result.of_cells.end())
       throw InputError(result.file + ": has no arrays 'area' and 'level' on its cells; run this part again.");
     first_ = std::move(result);
     facts_ = part;
-    files_.resize(part.parts);
+    parts_.resize(part.parts);
     of_points_.resize(first_.points.size());
     of_sensors_.resize(part.sensors.size());
-    files_[part.part - 1] = first_.file;
   } else {
     require_same_run(result, part);
-    std::string& file = files_[part.part - 1];
-    if (!file.empty())
-      throw InputError(text(file, " and ", result.file, ": are both part ", part.part, " of ", part.parts,
-                            "; give each part once."));
-    file = result.file;
+    if (const std::string& other = parts_[part.part - 1].file; !other.empty())
+      throw InputError(
+          text(other, " and ", file, ": are both part ", part.part, " of ", part.parts, "; give each part once."));
   }
-  put(part.of_points, part.first_point, of_points_, known_points_);
-  put(part.of_sensors, part.first_sensor, of_sensors_, known_sensors_);
+  parts_[part.part - 1] = {file, put(part.of_points, part.first_point, of_points_),
+                           put(part.of_sensors, part.first_sensor, of_sensors_)};
 }
 
 MergedYear YearMerge::finish() {
   std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < files_.size(); ++i)
-    if (files_[i].empty()) missing.push_back(i + 1);
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (parts_[i].file.empty()) missing.push_back(i + 1);
   if (!missing.empty())
     throw InputError(text(first_.file, ": is part ", facts_.part, " of ", facts_.parts, ", and there ",
                           missing.size() == 1 ? "is no part " : "are no parts ", some_of(missing, 20, std::identity()),
                           "; run them by --part i/", facts_.parts, ", or name their files, too."));
-  if (known_points_ != of_points_.size() || known_sensors_ != of_sensors_.size())
-    throw InputError(first_.file + ": its parts do not fit together; run all of them again.");
+  std::size_t points = 0, sensors = 0;  // where the next part has to begin
+  for (const Part& part : parts_) {
+    if (part.points.begin != points || part.sensors.begin != sensors)
+      throw InputError(part.file + ": does not begin where the part before it ends; run this part again.");
+    points = part.points.end, sensors = part.sensors.end;
+  }
+  if (points != of_points_.size() || sensors != of_sensors_.size())
+    throw InputError(parts_.back().file + ": ends before the last point; run this part again.");
   MergedYear merged;
   YearSolved& year = merged.solved;
   year.rules.occupied_hours = facts_.facts.occupied_hours;

@@ -43,11 +43,15 @@ class YearMerge {
  private:
   void require_same_run(const WrittenResult& result, const YearPart& part) const;
 
-  WrittenResult first_;             ///< which all others are held against
-  YearPart facts_;                  ///< of the first
-  std::vector<std::string> files_;  ///< by part; empty: it is not there
+  struct Part {
+    std::string file;  ///< empty: it is not there
+    YearSolved::Range points, sensors;
+  };
+
+  WrittenResult first_;  ///< which all others are held against
+  YearPart facts_;       ///< of the first
+  std::vector<Part> parts_;
   std::vector<PointYear> of_points_, of_sensors_;
-  std::size_t known_points_ = 0, known_sensors_ = 0;
 };
 
 }  // namespace clerestory

@@ -10,7 +10,8 @@ namespace {
 
 std::vector<AreaOfYear> told(const std::vector<YearArea>& areas) {
   std::vector<AreaOfYear> out;
-  for (const YearArea& area : areas) out.push_back({area.name, area.points.size(), area.figures, area.closed});
+  for (const YearArea& area : areas)
+    out.push_back({area.name, area.points.size(), area.figures, area.closed, area.has_area});
   return out;
 }
 

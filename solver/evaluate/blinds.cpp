@@ -13,7 +13,7 @@ constexpr std::size_t kMostTried = 12;  // 4,096 sets
 
 /// A room in one hour: the groups that let in sun.
 struct SunlitRoom {
-  std::span<const WindowGroup> groups;
+  std::span<const std::span<const float>> groups;
   std::span<const float> steady;
   std::vector<std::size_t> sunny;  ///< groups
   std::vector<std::size_t> lit;    ///< points that have enough sun with all blinds open; closing makes it no more
@@ -23,10 +23,8 @@ struct SunlitRoom {
   std::size_t points_with_sun(std::uint64_t set) const {
     return static_cast<std::size_t>(std::ranges::count_if(lit, [&](std::size_t p) {
       double lux = steady.empty() ? 0 : steady[p];
-      for (std::size_t k = 0; k < sunny.size(); ++k) {
-        const WindowGroup& group = groups[sunny[k]];
-        lux += group.direct[p] * (closed_in(set, k) ? group.closed : 1);
-      }
+      for (std::size_t k = 0; k < sunny.size(); ++k)
+        if (!closed_in(set, k)) lux += groups[sunny[k]][p];
       return lux >= kSunLux;
     }));
   }
@@ -70,17 +68,17 @@ Choice one_by_one(const SunlitRoom& room, std::size_t allowed, Choice best) {
 
 }  // namespace
 
-BlindsOfHour close_blinds(std::span<const WindowGroup> groups, std::span<const float> steady) {
+BlindsOfHour close_blinds(std::span<const std::span<const float>> groups, std::span<const float> steady) {
   CLERESTORY_ASSERT(groups.size(), <=, kMostWindowGroups);
-  const std::size_t points = groups.empty() ? steady.size() : groups.front().direct.size();
+  const std::size_t points = groups.empty() ? steady.size() : groups.front().size();
   SunlitRoom room{groups, steady, {}, {}};
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    CLERESTORY_ASSERT(groups[g].direct.size(), ==, points);
-    if (std::ranges::any_of(groups[g].direct, [](float lux) { return lux > 0; })) room.sunny.push_back(g);
+    CLERESTORY_ASSERT(groups[g].size(), ==, points);
+    if (std::ranges::any_of(groups[g], [](float lux) { return lux > 0; })) room.sunny.push_back(g);
   }
   for (std::size_t p = 0; p < points; ++p) {
     double lux = steady.empty() ? 0 : steady[p];
-    for (const std::size_t g : room.sunny) lux += groups[g].direct[p];
+    for (const std::size_t g : room.sunny) lux += groups[g][p];
     if (lux >= kSunLux) room.lit.push_back(p);
   }
   const auto allowed = static_cast<std::size_t>(kSunnyShare * static_cast<double>(points) + 1e-9);

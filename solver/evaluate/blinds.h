@@ -12,12 +12,6 @@ namespace clerestory {
 inline constexpr std::size_t kMostWindowGroups = 64;  ///< of one room
 inline constexpr double kSunnyShare = 0.02;           ///< of a room's points that may have kSunLux of direct sun
 
-/// The windows of one room that have blinds in common.
-struct WindowGroup {
-  std::span<const float> direct;  ///< direct sun that comes through it to each of the room's points, blinds open [lx]
-  double closed = 0;              ///< part of that which closed blinds let through [1]
-};
-
 struct BlindsOfHour {
   std::uint64_t closed = 0;  ///< bit g: blinds of group g are closed
   bool complies = true;      ///< at most 2 % of the points have sun; if not, `closed` leaves the fewest
@@ -27,13 +21,14 @@ struct BlindsOfHour {
 /// of sets as small the one that leaves the fewest such points, then that whose last group is the earliest. Where no
 /// set complies, the smallest that leaves the fewest.
 ///
-/// groups  at most kMostWindowGroups, as many points each.
+/// groups  direct sun through the windows of each to each of the room's points, blinds open [lx]: at most
+///         kMostWindowGroups. Closed blinds scatter what they let through, and it counts as no sun.
 /// steady  direct sun through windows without blinds [lx], by point; empty: none.
 ///
 /// All sets are tried for up to twelve groups that let in sun (in one hour few do: the sun shines on two facades);
 /// beyond that groups are closed one after another, each time the one that leaves the fewest points: the least set too
 /// where each point has its sun through one group. Thread safe.
-BlindsOfHour close_blinds(std::span<const WindowGroup> groups, std::span<const float> steady = {});
+BlindsOfHour close_blinds(std::span<const std::span<const float>> groups, std::span<const float> steady = {});
 
 /// Counts an occupied hour.
 inline void add_hour(const BlindsOfHour& hour, BlindsYear& year) {

@@ -52,7 +52,7 @@ inline constexpr double kLeedAse = 10;  ///< an ASE above it is to be explained 
 
 /// A room or a grid.
 struct AreaYear {
-  double area = 0;            ///< [m2], or whatever the weights are
+  double area = 0;            ///< [m2]; the number of points where their areas are not known
   ShareWithin sDA;            ///< area with DA >= 50 %
   ShareWithin ASE_more_than;  ///< area with direct sun in more than 250 hours
   ShareWithin ASE_at_least;   ///< area with direct sun in 250 hours or more
@@ -79,6 +79,7 @@ struct AreaOfYear {
   std::size_t points = 0;
   AreaYear year;
   BlindsYear blinds;
+  bool has_area = true;  ///< the areas that its points stand for are known
 };
 
 /// What the figures of a year were made with, and of.

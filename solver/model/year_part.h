@@ -24,7 +24,7 @@ struct FileOfRun {
 /// Points of a room or a grid, and the area that each stands for.
 struct AreaPoints {
   std::vector<std::uint32_t> points;  ///< of the lightmap, or sensors
-  std::vector<double> weight;         ///< [m2], or whatever YearArea has
+  std::vector<double> weight;         ///< [m2], or 1 each
 };
 
 /// All but the place of the part and the hours of its points is the same in all parts of one run.

@@ -42,7 +42,7 @@ class Annual : public ::testing::Test {
 };
 
 TEST_F(Annual, OpenGroundHasWhatTheWeatherSays) {
-  const ProgramRun run = annual("ground.json", {"--threshold", "300,20000"});
+  const ProgramRun run = annual("ground.json", {"--threshold", "300,20000", "--honeybee", folder / "hb"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Weather weather = read_epw(folder / "year.epw");
   double sum = 0;
@@ -56,6 +56,8 @@ TEST_F(Annual, OpenGroundHasWhatTheWeatherSays) {
   EXPECT_NEAR(grid["mean_illuminance"].get<double>(), sum / 3650, 1e-3 * sum / 3650);
   EXPECT_EQ(grid["sDA"], 0) << "light in 1,460 of 3,650 hours is 40 %";
   EXPECT_EQ(grid["ASE"], 100);
+  EXPECT_EQ(read_text(folder / "hb/metrics/da/up.da").substr(0, 6), "40.00\n");
+  EXPECT_NE(run.out.find("year.sensors.csv, " + (folder / "hb")), run.out.npos) << run.out;
   const WrittenResult result = read_result(folder / "year.vtp");
   std::size_t tops = 0;
   for (std::size_t i = 0; i < result.triangles.size(); ++i) {

@@ -1,5 +1,7 @@
 // A year in parts: the same bytes as one run, after a kill too, and what merge refuses.
 
+#include "pipeline/annual/year_parts.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +13,7 @@
 #include <signal.h>
 
 #include "io/read_result.h"
+#include "solver/model/error.h"
 #include "tests/support/even_weather.h"
 #include "tests/support/run_program.h"
 
@@ -252,6 +255,16 @@ TEST_F(YearInParts, MergeRefusesPartsOfDifferentRunsAndSaysWhatDiffers) {
   EXPECT_NE(weather.find("the contents of year.epw differ"), weather.npos) << weather;
   const std::string count = refusal({part(1, 3), part(2, 2)});
   EXPECT_NE(count.find("the one is of 3 parts, the other of 2"), count.npos) << count;
+}
+
+TEST_F(YearInParts, MergeRefusesPartsThatOverlap) {
+  YearMerge merge;
+  for (const int i : {1, 2, 3}) {
+    WrittenResult read = read_result(in_folder(part(i, 3)));
+    if (i == 2) read.year_tables.at("place").value[1] -= 1;  // its first point
+    merge.add(std::move(read));
+  }
+  EXPECT_THROW(merge.finish(), InputError);
 }
 
 TEST_F(YearInParts, MergeRefusesWhatIsNoPart) {

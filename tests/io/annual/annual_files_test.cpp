@@ -59,8 +59,8 @@ bool python_has(const std::string& library) {
 /// Adds the rows in two blocks.
 void fill(HourSeries& series) {
   const std::span<const float> total(kTotal), direct(kDirect);
-  series.add(0, total.first(8), direct.first(8));
-  series.add(0, total.last(4), direct.last(4));
+  series.add(total.first(8), direct.first(8));
+  series.add(total.last(4), direct.last(4));
 }
 
 AreaOfYear room() {
@@ -110,6 +110,13 @@ TEST(AnnualReport, TellsFiguresWithTheirIntervalsAndTheRulesInForce) {
   EXPECT_EQ(r["hours_not_complying"], 4);
 }
 
+TEST(AnnualReport, TheAreaOfPointsThatStandForNoneIsNotKnown) {
+  AnnualReport report;
+  report.grids = {room()};
+  report.grids[0].has_area = false;
+  EXPECT_TRUE(Json::parse(annual_json(report))["grids"][0]["area"].is_null());
+}
+
 TEST(AnnualReport, LeavesLeedOutAtAnotherThreshold) {
   AnnualReport report;
   report.threshold = 500;
@@ -137,7 +144,7 @@ TEST(NpyFile, HeaderSaysTypeAndShape) {
 
 TEST(HourSeries, AsAFolderHasOneArrayAFile) {
   const TempFolder folder;
-  const auto series = make_hour_series(folder / "hours", kHours, {{"sensors", kPoints}});
+  const auto series = make_hour_series(folder / "hours", kHours, kPoints);
   fill(*series);
   for (const char* file : {"hour.npy", "sensors/position.npy", "sensors/normal.npy", "sensors/total.npy"})
     EXPECT_FALSE(fs::exists(folder / (std::string("hours/") + file))) << file << " before all is whole";
@@ -155,7 +162,7 @@ TEST(HourSeries, AsAFolderHasOneArrayAFile) {
 TEST(HourSeries, AsAFolderIsReadByNumPy) {
   if (!python_has("numpy")) GTEST_SKIP() << "no NumPy";
   const TempFolder folder;
-  const auto series = make_hour_series(folder / "hours", kHours, {{"sensors", kPoints}});
+  const auto series = make_hour_series(folder / "hours", kHours, kPoints);
   fill(*series);
   series->commit();
   const std::string script = "import numpy as n; d = '" + (folder / "hours") +
@@ -169,10 +176,9 @@ TEST(HourSeries, AsAFolderIsReadByNumPy) {
 TEST(HourSeries, AsHdf5HasTheSameArraysAndTheSameBytesEachTime) {
   const TempFolder folder;
   for (const char* name : {"a.h5", "b.hdf5"}) {
-    const auto series = make_hour_series(folder / name, kHours, {{"sensors", kPoints}, {"vertices", kPoints}});
+    const auto series = make_hour_series(folder / name, kHours, kPoints);
     fill(*series);
     EXPECT_FALSE(fs::exists(folder / name)) << "before it is whole";
-    series->add(1, kDirect, kTotal);
     series->commit();
   }
   const std::string bytes = read_text(folder / "a.h5");
@@ -187,7 +193,7 @@ TEST(HourSeries, AsHdf5HasTheSameArraysAndTheSameBytesEachTime) {
 TEST(HourSeries, AsHdf5IsReadByItsOwnTools) {
   if (std::system("h5dump --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no h5dump";
   const TempFolder folder;
-  auto series = make_hour_series(folder / "a.h5", kHours, {{"sensors", kPoints}});
+  auto series = make_hour_series(folder / "a.h5", kHours, kPoints);
   fill(*series);
   series->commit();
   series.reset();  // it holds a lock on the file
@@ -202,7 +208,7 @@ TEST(HourSeries, AsHdf5IsReadByItsOwnTools) {
 TEST(HourSeries, ThatIsNotFinishedLeavesWhatWasThere) {
   const TempFolder folder;
   folder.write("a.h5", "old");
-  fill(*make_hour_series(folder / "a.h5", kHours, {{"sensors", kPoints}}));
+  fill(*make_hour_series(folder / "a.h5", kHours, kPoints));
   EXPECT_EQ(read_text(folder / "a.h5"), "old");
   EXPECT_EQ(folder.listing(), "a.h5 ");
 }
@@ -212,19 +218,17 @@ TEST(HourSeries, ThatCannotBeWrittenIsRefused) {
   folder.write("file", "x");
   EXPECT_THROW(make_hour_series(folder / "file", kHours, {}), InputError);
   EXPECT_THROW(make_hour_series(folder / "none/a.h5", kHours, {}), InputError);
-  EXPECT_EQ(bytes_of_series(4000, {{"sensors", kPoints}}), 3 * (8 * 4000 + 48u));
+  EXPECT_EQ(bytes_of_series(4000, 3), 3 * (8 * 4000 + 48u));
 }
 
 TEST(HoneybeeFolder, HoldsWhatLadybugToolsRead) {
   const TempFolder folder;
   const fs::path out = folder / "results";
-  const HoneybeeLightPath south{"south", {"0_south", "1_south"}};
-  HoneybeeFolder results(out, kHours, {{"desk", 3}, {"R2/a b", 1, {kStaticApertures, south}}, {"r2_a_b", 0}});
+  HoneybeeFolder results(out, kHours, {{"desk", 3}, {"R2/a b", 1}, {"r2_a_b", 0}});
   const std::span<const float> total(kTotal), direct(kDirect);
-  results.add(0, 0, 0, total.first(4), direct.first(4));
-  results.add(0, 0, 0, total.last(8), direct.last(8));
-  results.add(1, 0, 0, total.first(4), direct.first(4));
-  for (const std::size_t state : {0u, 1u}) results.add(1, 1, state, total.last(4), direct.last(4));
+  results.add(0, total.first(4), direct.first(4));
+  results.add(0, total.last(8), direct.last(8));
+  results.add(1, total.last(4), direct.last(4));
   EXPECT_FALSE(fs::exists(out / "grids_info.json"));
   const HoneybeeMetrics one{{12.345}, {20}, {30}, {40}, {30}},
       three{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
@@ -232,7 +236,7 @@ TEST(HoneybeeFolder, HoldsWhatLadybugToolsRead) {
 
   EXPECT_EQ(Npy(out / "__static_apertures__/default/total/desk.npy").values<float>(), kTotal);
   EXPECT_EQ(Npy(out / "__static_apertures__/default/direct/desk.npy").values<float>(), kDirect);
-  EXPECT_EQ(Npy(out / "south/1_south/total/R2_a_b.npy").values<float>(),
+  EXPECT_EQ(Npy(out / "__static_apertures__/default/total/R2_a_b.npy").values<float>(),
             std::vector<float>(kTotal.end() - 4, kTotal.end()));
   EXPECT_EQ(read_text(out / "sun-up-hours.txt"), "7.5\n12.5\n4000.5\n8759.5\n");
   const Json study = Json::parse(read_text(out / "study_info.json"));
@@ -251,11 +255,15 @@ TEST(HoneybeeFolder, HoldsWhatLadybugToolsRead) {
   EXPECT_EQ(info[1]["full_id"], "R2_a_b");
   EXPECT_EQ(info[2]["full_id"], "r2_a_b_2") << "file systems that know no capitals";
   const Json states = Json::parse(read_text(out / "grid_states.json"));
-  EXPECT_EQ(states["R2_a_b"]["south"], (Json{"0_south", "1_south"}));
-  EXPECT_TRUE(states["desk"].empty());
+  EXPECT_EQ(states, (Json{{"desk", Json::object()}, {"R2_a_b", Json::object()}, {"r2_a_b_2", Json::object()}}));
   EXPECT_EQ(read_text(out / "metrics/da/R2_a_b.da"), "12.35\n");
   EXPECT_EQ(read_text(out / "metrics/udi_lower/desk.udi"), "1.00\n2.00\n3.00\n");
   EXPECT_EQ(Json::parse(read_text(out / "metrics/udi_upper/grids_info.json")), info);
+
+  // A run that does not come to its end leaves all of it.
+  HoneybeeFolder(out, kHours, {{"desk", 1}}).add(0, total.first(4), direct.first(4));
+  EXPECT_EQ(Json::parse(read_text(out / "grids_info.json")), info);
+  EXPECT_EQ(Npy(out / "__static_apertures__/default/total/desk.npy").values<float>(), kTotal);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ YearPart middle_part() {
   part.facts.scene = "a.json", part.facts.schedule = "8-18", part.facts.occupied_hours = 3650;
   part.facts.threshold = 1.0 / 3, part.facts.error_grids.total = 0.1;
   part.facts.rooms = {{"R1", 3, {}, {12, 3}}};
-  part.facts.grids = {{"desk", 2, {}, {}}};
+  part.facts.grids = {{"desk", 2, {}, {}, false}};
   part.more_thresholds = {500, 0.7};
   part.files = {{"a.obj", "0123456789abcdef"}};
   part.rooms = {{{0, 2, 3}, {0.1, 0.2, 0.7}}};
@@ -65,6 +65,8 @@ TEST(YearPartTables, ReadBackTheSameNumbers) {
   EXPECT_EQ(read.of_points[0].EN17037[3], 8760);
   EXPECT_EQ(read.of_points[0].lux_hours, 1e7 / 3);
   EXPECT_EQ(read.facts.threshold, 1.0 / 3);
+  EXPECT_TRUE(read.facts.rooms[0].has_area);
+  EXPECT_FALSE(read.facts.grids[0].has_area);
   EXPECT_EQ(read.facts.rooms[0].blinds.hours_not_complying, 3);
 }
 
@@ -93,6 +95,11 @@ TEST(YearPartTables, ThatDoNotFitTogetherAreRefused) {
       {"a part of a billion",
        [](WrittenResult& r) {
          r.year_part.replace(r.year_part.find("\"parts\":3"), std::strlen("\"parts\":3"), "\"parts\":1000000000");
+       }},
+      {"more hours with light than a year has",
+       [](WrittenResult& r) {
+         r.year_part.replace(r.year_part.find("\"lit_hours\":0"), std::strlen("\"lit_hours\":0"),
+                             "\"lit_hours\":1e300");
        }},
       {"half a point", [](WrittenResult& r) { r.year_tables["rooms"].value[0] = 0.5; }},
       {"fewer points than the room has", [](WrittenResult& r) { r.year_tables["rooms"].value.resize(4); }},

@@ -149,7 +149,7 @@ TEST_F(Epw, NightsOffsetsAreZeroAndFillersAreMissing) {
   EXPECT_EQ(read(with_cell(12, 14, "-5")).at(10, 17, 4).direct_normal, 0);
   EXPECT_EQ(read(with_cell(12, 14, "-0")).at(10, 17, 4).direct_normal, 0);
   EXPECT_EQ(read(with_cell(12, 14, "\"7.5\"")).at(10, 17, 4).direct_normal, 7.5);
-  for (const char* filler : {"", " ", "-99", "-9999", "9999", "9999.", "99999", "999999"})
+  for (const char* filler : {"", " ", "-6", "-99", "-9999", "9999", "9999.", "99999", "999999"})
     EXPECT_FALSE(read(with_cell(12, 15, filler)).at(10, 17, 4).diffuse_horizontal) << filler;
   for (const char* filler : {"", "-9999", "9999", "9999.", "99999", "999999", "no"})
     EXPECT_FALSE(read(with_cell(21, 18, filler)).at(10, 17, 13).diffuse_horizontal_lux) << filler;

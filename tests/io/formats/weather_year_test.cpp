@@ -25,7 +25,8 @@ const char* const kFiles[] = {"USA_CO_Denver.Intl.AP.725650_TMY3.epw", "USA_HI_H
 
 DaylightYear year_of(const Weather& weather) { return daylight_year(weather, weather.place, 0, 0.2); }
 
-/// Golden, with 500 and 100 W/m2 from 6 to 18 h of each day.
+/// Golden, with 100 W/m2 of the sky from 6 to 18 h of each day, and 500 of the sun while it is up the whole year, from
+/// 8 to 16 h.
 Weather even_year() {
   Weather weather{"even.epw", "Golden", {39.742476, -105.1786, -7}, {}, {}};
   constexpr int kDays[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
@@ -35,10 +36,10 @@ Weather even_year() {
         WeatherHour h;
         h.year = 1990 + month, h.month = month, h.day = day, h.hour = hour;
         h.line = 9 + static_cast<int>(weather.hours.size());
-        const bool day_time = hour > 6 && hour <= 18;
-        h.direct_normal = day_time ? 500 : 0;
+        const bool day_time = hour > 6 && hour <= 18, sunny = hour > 8 && hour <= 16;
+        h.direct_normal = sunny ? 500 : 0;
         h.diffuse_horizontal = day_time ? 100 : 0;
-        h.direct_normal_lux = day_time ? 50'000 : 0;
+        h.direct_normal_lux = sunny ? 50'000 : 0;
         h.diffuse_horizontal_lux = day_time ? 12'000 : 0;
         weather.hours.push_back(h);
       }
@@ -59,7 +60,9 @@ bool warns(const DaylightYear& year, const std::string& words) {
 }
 
 TEST(DaylightYear, HasTheHoursWithLightInTheirOrder) {
-  const DaylightYear year = year_of(even_year());
+  Weather weather = even_year();
+  weather.hours[6].direct_normal = 500, weather.hours[6].direct_normal_lux = 50'000;
+  const DaylightYear year = year_of(weather);
   ASSERT_EQ(year.hours.size(), 12u * 365);
   EXPECT_TRUE(year.warnings.empty()) << year.warnings.front();
   EXPECT_EQ(year.hours.front().hour, 6);
@@ -119,6 +122,13 @@ TEST(DaylightYear, WeatherOfElsewhereIsToldWithItsDistance) {
   EXPECT_TRUE(daylight_year(weather, place, 0, 0.2).warnings.empty()) << "89 km";
   place.latitude_deg -= 0.2;  // a degree: 111 km
   EXPECT_TRUE(warns(daylight_year(weather, place, 0, 0.2), "even.epw: is of Golden, 111 km from the scene's location"));
+}
+
+TEST(DaylightYear, DirectLightWithoutASunIsToldWhereItIsMuch) {
+  const Weather weather = even_year();
+  Place place = weather.place;
+  place.timezone += 6;  // the sun rises at 10:42 to 13:21
+  EXPECT_TRUE(warns(daylight_year(weather, place, 0, 0.2), " hours have direct light while the sun is down, "));
 }
 
 TEST(DaylightYear, ALeapDayIsLeftOutAndNamed) {

@@ -13,7 +13,8 @@ YearSeriesFiles::YearSeriesFiles(const std::string& hours_place, const std::stri
   std::vector<int> hours;
   for (const DaylightHour& h : year.hours) hours.push_back(h.hour);
   if (!hours_place.empty()) {
-    console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sensors_.size())) + " into " + hours_place);
+    console.step("hours of the sensors: " + bytes(bytes_of_series(hours.size(), sensors_.size())) + " into " +
+                 hours_place);
     hours_ = make_hour_series(hours_place, hours, sensors_);
   }
   if (!honeybee_place.empty()) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "solver/illumination/gloss_light.h"
 #include "solver/illumination/light_rows.h"
 #include "solver/illumination/problem.h"
 #include "solver/lights/light_tree.h"
@@ -34,6 +35,7 @@ struct LightSample {
 struct DeltaEffort {
   int sun_rays = 1;        ///< to each sun
   int opening_rays = 256;  ///< to each luminaire, at most; 1, 4, 16, 64 or 256
+  int gloss_rays = 16;     ///< pairs, for what glossy surfaces send on
 };
 
 class LightSampler {
@@ -68,7 +70,10 @@ class LightSampler {
   /// Probability with which sample() would choose the luminaire or sun of this number at p.
   double probability(std::uint32_t light, const Vec3& p, const Vec3& n) const;
 
-  /// Irradiance at p of luminaires and of the sun: a shadow ray to each luminaire, more to openings that are near.
+  const GlossLight& gloss() const { return gloss_; }
+
+  /// Irradiance at p of luminaires and of the sun, straight and over lobes of glossy surfaces: a shadow ray to each
+  /// luminaire, more to openings that are near.
   /// row: null, or where to add what comes of each.
   Spectrum delta_light(const Vec3& p, const Vec3& n, const DeltaEffort& effort, std::uint64_t key,
                        LightRow* row = nullptr) const;
@@ -87,6 +92,7 @@ class LightSampler {
 
   const Problem& problem_;
   const Field& glow_;
+  GlossLight gloss_;
   LightTree patches_, luminaires_;              ///< of bright_; of all luminaires, by number
   std::vector<std::uint32_t> bright_;           ///< patches sampled like lights
   std::vector<std::uint32_t> number_of_patch_;  ///< N, number in bright_ or kNone; empty without any

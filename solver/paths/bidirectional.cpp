@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "solver/lights/luminaire.h"
@@ -11,8 +12,8 @@
 #include "solver/lights/sun.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_balance.h"
+#include "solver/paths/path_place.h"
 #include "solver/paths/way_on.h"
-#include "solver/sampling/unit_square.h"
 #include "solver/visibility/echoes.h"
 
 namespace clerestory {
@@ -25,48 +26,82 @@ constexpr double kSafe = 0.3;
 constexpr double kMostSurvival = 0.95;
 /// What the choice of an opening and the ray through it cost, in rays.
 constexpr unsigned kCostOfOpening = 3;
-/// What a cosine counts as at least: rays in float meet surfaces that they run along.
-constexpr double kGrazing = 1e-9;
 
-/// A place on a surface where a particle was scattered.
-struct ParticleVertex {
-  Vec3 x, n;        ///< off the surface, on the side that the particle leaves to
-  Spectrum flux;    ///< that leaves [W]
-  double survival;  ///< chance with which it goes on
-  double beyond;    ///< joints_beyond()
+/// The last part of a path on its way to `at`, and what it was before.
+struct EyePlace {
+  PathPlace at;
+  Spectrum throughput{1.0};  ///< of what arrives
+  double survival = 1;       ///< chance with which a particle would go on
+  double from_eye = 0;       ///< PathPart::from_eye
+  double of_light = 0;       ///< PathPart::from_light over its density of directions
+  bool can_join = false;
+  double before_last = 0;
+  bool is_receiver = true;
+
+  /// joints_before(), of a light in direction d.
+  double before(const Vec3& d) const {
+    if (is_receiver) return 0;
+    return joints_before({from_eye, survival * at.density_back(d) * of_light, can_join}, before_last);
+  }
 };
 
-/// From x, at cosine cos_x, back to p, as PathPart wants it. d2: squared distance, straight where the way is not.
-PathPart path_part(double density_of_way, double cos_p, double cos_x, double d2, double survival, bool can_join) {
-  return {density_of_way * cos_x / d2, survival * (cos_x / std::numbers::pi) * cos_p / d2, can_join};
-}
+/// The same of a particle.
+struct ParticlePlace {
+  PathPlace at;
+  Spectrum flux;  ///< that arrives [W]
+  double survival;
+  std::optional<PathEnd> end{};  ///< of the first place; but for PathEnd::met
+  bool can_be_met = true;        ///< the light of that
+  double from_light = 0;         ///< PathPart::from_light
+  double of_eye = 0;             ///< PathPart::from_eye over its density of directions
+  bool can_join = false;
+  double beyond_last = 0;
+
+  /// joints_beyond(), of a path from direction d.
+  double beyond(const Vec3& d) const {
+    if (end) return PathEnd{can_be_met ? at.density_back(d) : 0, end->shadow_ray, end->from_light}.beyond();
+    return joints_beyond({at.density_back(d) * of_eye, from_light, can_join}, beyond_last);
+  }
+};
 
 double square(const Vec3& a) { return dot(a, a); }
 
 /// Both ends of a problem, for one path.
 class BothEnds {
  public:
-  BothEnds(const Illumination& light, const Emission& emission, unsigned long long& rays)
-      : light_(light), emission_(emission), scene_(light.problem.rays), patches_(light.problem.patches), rays_(rays) {}
+  BothEnds(const Illumination& light, const Emission& emission, const RayScene& scene, unsigned long long& rays)
+      : light_(light),
+        emission_(emission),
+        problem_(light.problem),
+        scene_(scene),
+        patches_(light.problem.patches),
+        rays_(rays) {}
 
   /// The places of a particle. pick, u: as of Emission::sample().
-  std::vector<ParticleVertex> particle(double pick, const std::array<double, 4>& u, RandomStream& random) const;
+  std::vector<ParticlePlace> particle(double pick, const std::array<double, 4>& u, RandomStream& random) const;
 
-  /// Light at point p with normal n, of a path from the receiver that has `before` as its joints_before().
-  Spectrum by_shadow_ray(const Vec3& p, const Vec3& n, double before, const std::array<double, 3>& u) const;
-  Spectrum through_opening(const Vec3& p, const Vec3& n, double before, const std::array<double, 3>& u) const;
-  Spectrum joined(const Vec3& p, const Vec3& n, double before, const ParticleVertex& y) const;
+  /// What arrives at a place of a path from the receiver and goes on to there.
+  Spectrum by_shadow_ray(const EyePlace& z, const std::array<double, 3>& u) const;
+  Spectrum through_opening(const EyePlace& z, const std::array<double, 3>& u) const;
+  Spectrum joined(const EyePlace& z, const ParticlePlace& y) const;
 
-  double survival(PatchId p) const { return std::min(patches_.albedo(p).max(), kMostSurvival); }
-
-  /// The end of a path at point p: the sky in direction d, met by `hit`, or a patch that glows.
-  PathEnd end_in_sky(const Vec3& p, const Vec3& n, const Vec3& d, double density_of_way, const Hit& hit) const {
-    const Ray back = hit.reflected ? hit.leg : Ray{p, d};
-    const double by_opening = hit.reflected || light_.openings.empty() ? 0 : light_.openings.preference(p, n, d);
-    return {density_of_way, by_opening, emission_.density_of_sky(back.origin, -back.direction) * dot(n, d)};
+  double survival(PatchId p, const PathPlace& at) const {
+    const double albedo = patches_.albedo(p).max() + (at.lobe ? at.lobe->specular().max() : 0);
+    return std::min(albedo, kMostSurvival);
   }
-  PathEnd end_on_patch(PatchId q, const Vec3& n, const Vec3& d, double density_of_way, double by_shadow_ray) const {
-    return {density_of_way, by_shadow_ray, emission_.density_of_patch(q) * dot(n, d) / std::numbers::pi};
+  double density_of_way(const PathPlace& at, const Vec3& d) const {
+    return at.density(d, density_of_ways(light_, at.x, at.n, d));
+  }
+
+  /// The end of a path at z: the sky in direction d, met by `hit`, or a patch that glows.
+  PathEnd end_in_sky(const PathPlace& z, const Vec3& d, double density_of_way, const Hit& hit) const {
+    const Ray back = hit.reflected ? hit.leg : Ray{z.x, d};
+    const double by_opening = hit.reflected || light_.openings.empty() ? 0 : light_.openings.preference(z.x, z.n, d);
+    return {density_of_way, by_opening, emission_.density_of_sky(back.origin, -back.direction) * dot(z.n, d)};
+  }
+  PathEnd end_on_patch(PatchId q, const PathPlace& z, const Vec3& d, double density_of_way,
+                       double by_shadow_ray) const {
+    return {density_of_way, by_shadow_ray, emission_.density_of_patch(q) * dot(z.n, d) / std::numbers::pi};
   }
 
  private:
@@ -77,14 +112,13 @@ class BothEnds {
   };
   FirstLeg first_leg(const Emitted& e, const std::array<double, 4>& u, RandomStream& random) const;
   FirstLeg leg(const Ray& ray, const Spectrum& flux, RandomStream& random) const;
-  PathEnd end_of_particle(const Emitted& e, const FirstLeg& first, const Vec3& x, const Vec3& n) const;
-  Vec3 off_patch(const Hit& hit, const Ray& ray, const Vec3& n) const {
-    return scene_.off_surface(in_plane_of(patches_, hit.patch, hit.position(ray)), n);
-  }
+  PathEnd end_of_particle(const Emitted& e, const FirstLeg& first, const PathArrival& at) const;
+  bool is_luminaire(std::uint32_t light) const { return light < problem_.lights.luminaires.size(); }
 
   const Illumination& light_;
   const Emission& emission_;
-  const RayScene& scene_;
+  const Problem& problem_;
+  const RayScene& scene_;  ///< without gloss
   const PatchSet& patches_;
   unsigned long long& rays_;
 };
@@ -99,13 +133,13 @@ BothEnds::FirstLeg BothEnds::leg(const Ray& ray, const Spectrum& flux, RandomStr
 /// Where a particle first falls. Luminaires shine from all over their opening near by and from its middle farther away:
 /// it is sent from both, and counts where that is where it comes from.
 BothEnds::FirstLeg BothEnds::first_leg(const Emitted& e, const std::array<double, 4>& u, RandomStream& random) const {
-  if (e.light >= light_.problem.lights.luminaires.size()) {
+  if (!is_luminaire(e.light)) {
     FirstLeg first = leg(e.ray, e.flux, random);
     const bool is_sun = e.light != Emitted::kNone;
     if (is_sun && first.hit.reflected) first.flux = Spectrum(0.0);  // its image's
     return first;
   }
-  const PlacedLuminaire& luminaire = light_.problem.lights.luminaires[e.light];
+  const PlacedLuminaire& luminaire = problem_.lights.luminaires[e.light];
   const Vec3& d = e.ray.direction;
   const auto from = [&](const Vec3& q) {
     FirstLeg first = leg({ray_start(luminaire, q, d), d}, e.flux, random);
@@ -130,174 +164,184 @@ BothEnds::FirstLeg BothEnds::first_leg(const Emitted& e, const std::array<double
   return one;
 }
 
-PathEnd BothEnds::end_of_particle(const Emitted& e, const FirstLeg& first, const Vec3& x, const Vec3& n) const {
-  const Vec3 d = -first.hit.direction(first.ray);
-  const double cosine = std::max(dot(n, d), kGrazing);
+/// But for PathEnd::met.
+PathEnd BothEnds::end_of_particle(const Emitted& e, const FirstLeg& first, const PathArrival& at) const {
   if (e.patch.valid()) {
     const bool can_choose = !first.hit.reflected && light_.sampler.is_bright(e.patch);
-    const double to_patch = can_choose
-                                ? light_.sampler.density(e.patch, light_.sampler.receiver(x, n), first.hit.distance,
-                                                         dot(patches_.normal[e.patch], first.ray.direction), false)
-                                : 0;
-    return {density_of_ways(light_, x, n, d), to_patch, e.density_place * cosine / std::numbers::pi};
+    const double to_patch =
+        can_choose ? light_.sampler.density(e.patch, light_.sampler.receiver(at.x, at.n), first.hit.distance,
+                                            dot(patches_.normal[e.patch], first.ray.direction), false)
+                   : 0;
+    return {0, to_patch, e.density_place * at.cosine / std::numbers::pi};
   }
   if (e.is_sky()) {
-    const double by_opening = first.hit.reflected || light_.openings.empty() ? 0 : light_.openings.preference(x, n, d);
-    return {density_of_ways(light_, x, n, d), by_opening, e.density_place * e.density_direction * cosine};
+    const double by_opening =
+        first.hit.reflected || light_.openings.empty() ? 0 : light_.openings.preference(at.x, at.n, at.back);
+    return {0, by_opening, e.density_place * e.density_direction * at.cosine};
   }
-  const double by_shadow_ray = light_.sampler.probability(e.light, x, n);
-  if (e.light >= light_.problem.lights.luminaires.size()) return {0, by_shadow_ray, e.density_place * cosine};
+  const double by_shadow_ray = light_.sampler.probability(e.light, at.x, at.n);
+  if (!is_luminaire(e.light)) return {0, by_shadow_ray, e.density_place * at.cosine};
   return {0, by_shadow_ray,
-          e.density_place * e.density_direction * cosine / square(first.hit.position(first.ray) - first.ray.origin)};
+          e.density_place * e.density_direction * at.cosine / square(first.hit.position(first.ray) - first.ray.origin)};
 }
 
-std::vector<ParticleVertex> BothEnds::particle(double pick, const std::array<double, 4>& u,
-                                               RandomStream& random) const {
-  std::vector<ParticleVertex> vertices;
-  if (emission_.empty()) return vertices;
+std::vector<ParticlePlace> BothEnds::particle(double pick, const std::array<double, 4>& u, RandomStream& random) const {
+  std::vector<ParticlePlace> places;
+  if (emission_.empty()) return places;
   const Emitted e = emission_.sample(pick, u);
-  if (e.flux.is_black()) return vertices;
+  if (e.flux.is_black()) return places;
   const FirstLeg first = first_leg(e, u, random);
   Spectrum flux = first.flux;
-  if (flux.is_black()) return vertices;
+  if (flux.is_black()) return places;
   Hit hit = first.hit;
   Ray ray = first.ray;
+  double way = 0;  // density of the last one [1/sr]
   for (;;) {
-    const Vec3& arrives_on = patches_.normal[hit.patch];
-    const Vec3 in_plane = in_plane_of(patches_, hit.patch, hit.position(ray));
-    const double cos_in = std::max(-dot(arrives_on, hit.direction(ray)), kGrazing);
-    double beyond;
-    if (vertices.empty()) {
-      const PathEnd end = end_of_particle(e, first, scene_.off_surface(in_plane, arrives_on), arrives_on);
-      beyond = end.beyond();
+    const PathArrival arrival = arrival_of(problem_, hit, ray);
+    ParticlePlace y{place_of(problem_, hit, arrival, random), flux, 0};
+    y.survival = survival(hit.patch, y.at);
+    y.at.diffusely_back = density_of_ways(light_, arrival.x, arrival.n, arrival.back);
+    if (places.empty()) {
+      y.end = end_of_particle(e, first, arrival);
+      y.can_be_met = e.light == Emitted::kNone;
     } else {
       // From the receiver this part is gone the other way.
-      const ParticleVertex& last = vertices.back();
-      const double cos_last = dot(last.n, ray.direction);
-      const double way =
-          density_of_ways(light_, scene_.off_surface(in_plane, arrives_on), arrives_on, -hit.direction(ray));
-      beyond = joints_beyond(path_part(way, cos_in, cos_last, square(in_plane - last.x), last.survival, !hit.reflected),
-                             last.beyond);
+      const ParticlePlace& last = places.back();
+      const double d2 = square(arrival.on - last.at.x);
+      y.from_light = last.survival * way * arrival.cosine / d2;
+      y.of_eye = dot(last.at.n, ray.direction) / d2;
+      y.can_join = !hit.reflected;
+      y.beyond_last = last.beyond(ray.direction);
     }
-    const auto on = patches_.scatter(hit.patch, patches_.scatters_through(hit.patch) ? random.uniform() : 0);
-    flux *= on.share;
-    if (flux.is_black()) return vertices;
-    vertices.push_back({scene_.off_surface(in_plane, on.normal), on.normal, flux, survival(hit.patch), beyond});
-    const ParticleVertex& here = vertices.back();
-    if (!(random.uniform() < here.survival)) return vertices;
-    flux *= 1 / here.survival;
-    const double a = random.uniform(), b = random.uniform();
-    ray = {here.x, cosine_direction(Frame(here.n), a, b)};
+    if (y.at.albedo().is_black()) return places;
+    places.push_back(y);
+    if (!(random.uniform() < y.survival)) return places;
+    const PathWay on = way_from_light(y.at, random);
+    flux *= on.factor / y.survival;
+    if (flux.is_black()) return places;
+    way = on.density;
+    ray = {y.at.x, on.direction};
     hit = one_way(scene_, patches_, ray, random);
     ++rays_;
-    if (!hit.patch.valid()) return vertices;
+    if (!hit.patch.valid()) return places;
     flux *= hit.transmittance;
   }
 }
 
-Spectrum BothEnds::by_shadow_ray(const Vec3& p, const Vec3& n, double before, const std::array<double, 3>& u) const {
+Spectrum BothEnds::by_shadow_ray(const EyePlace& z, const std::array<double, 3>& u) const {
+  const Vec3 &p = z.at.x, &n = z.at.n;
   const LightSample s = light_.sampler.sample(light_.sampler.receiver(p, n), u[0], u[1], u[2], false);
   if (s.irradiance.is_black()) return s.irradiance;
-  double weight = 1;
   const Vec3 to = s.end - p, d = normalized(to);
-  const double cosine = dot(n, d);
-  const std::size_t luminaires = light_.problem.lights.luminaires.size();
+  const Spectrum reflected = s.irradiance * z.at.reflects(d);
+  if (reflected.is_black()) return reflected;
+  double weight = 1;
+  const double cosine = dot(n, d), before = z.before(d);
   if (s.patch.valid()) {
-    const PathEnd end = end_on_patch(s.patch, n, d, density_of_ways(light_, p, n, d), s.density);
+    const PathEnd end = end_on_patch(s.patch, z.at, d, density_of_way(z.at, d), s.density);
     weight = end.shadow_ray / end.all(before);
   } else if (s.way.empty() && before > 0) {
     PathEnd end{0, s.probability};
-    if (s.light < luminaires) {
+    if (is_luminaire(s.light)) {
       end.from_light = emission_.probability_of_luminaire(s.light) * emission_.density_of_direction(s.light, -d) *
                        cosine / square(to);
     } else {
-      const Sun& sun = light_.problem.lights.suns[s.light - luminaires];
+      const Sun& sun = problem_.lights.suns[s.light - problem_.lights.luminaires.size()];
       end.from_light = emission_.density_of_sun(s.light, p, -d) / density_in_disc(sun, d) * cosine;
     }
     weight = end.shadow_ray / end.all(before);
   }
   ++rays_;
-  return s.irradiance * weight * scene_.transmittance_by_mirrors(p, s.end, s.way);
+  return reflected * weight * scene_.transmittance_by_mirrors(p, s.end, s.way);
 }
 
-Spectrum BothEnds::through_opening(const Vec3& p, const Vec3& n, double before, const std::array<double, 3>& u) const {
+Spectrum BothEnds::through_opening(const EyePlace& z, const std::array<double, 3>& u) const {
+  const Vec3 &p = z.at.x, &n = z.at.n;
   const OpeningSampler::Sample s = light_.openings.sample(p, n, u[0], u[1], u[2]);
   const double cosine = dot(n, s.direction);
   if (!(s.per_choice > 0) || !(cosine > 0)) return Spectrum(0.0);
   rays_ += kCostOfOpening;
   const Spectrum passes = scene_.transmittance(p, p + s.direction * (4 * scene_.diameter()));
   if (passes.is_black()) return passes;
-  const PathEnd end{density_of_ways(light_, p, n, s.direction),
+  const PathEnd end{density_of_way(z.at, s.direction),
                     s.preference + light_.openings.preference(p, n, s.direction, s.opening),
                     emission_.density_of_sky(p, -s.direction) * cosine};
-  return light_.sky(s.direction) * passes * (cosine * s.per_choice * s.preference / end.all(before));
+  return light_.sky(s.direction) * z.at.reflects(s.direction) * passes *
+         (cosine * s.per_choice * s.preference / end.all(z.before(s.direction)));
 }
 
-Spectrum BothEnds::joined(const Vec3& p, const Vec3& n, double before, const ParticleVertex& y) const {
-  const Vec3 to = y.x - p;
-  const double d2 = square(to), cos_p_r = dot(n, to), cos_y_r = -dot(y.n, to);
-  if (!(cos_p_r > 0 && cos_y_r > 0)) return Spectrum(0.0);
-  const double r = std::sqrt(d2), cos_p = cos_p_r / r, cos_y = cos_y_r / r;
-  const PathPart part = path_part(density_of_ways(light_, p, n, to / r), cos_p, cos_y, d2, y.survival, true);
+Spectrum BothEnds::joined(const EyePlace& z, const ParticlePlace& y) const {
+  const Vec3 to = y.at.x - z.at.x;
+  const double d2 = square(to), along_z = dot(z.at.n, to), along_y = -dot(y.at.n, to);
+  if (!(along_z > 0 && along_y > 0)) return Spectrum(0.0);
+  const double r = std::sqrt(d2), cos_z = along_z / r, cos_y = along_y / r;
+  const Vec3 d = to / r;
+  const Spectrum share = y.flux * y.at.reflects(-d) * z.at.reflects(d);
+  if (share.is_black()) return share;
+  const PathPart part{density_of_way(z.at, d) * cos_y / d2,
+                      y.survival * y.at.density(-d, cos_y / std::numbers::pi) * cos_z / d2, true};
   ++rays_;
-  return y.flux * scene_.transmittance(p, y.x) *
-         (cos_p * cos_y / (std::numbers::pi * d2) * weight_of_joint(part, before, y.beyond));
+  return share * scene_.transmittance(z.at.x, y.at.x) *
+         (cos_z * cos_y / (std::numbers::pi * d2) * weight_of_joint(part, z.before(d), y.beyond(-d)));
 }
 
 }  // namespace
 
 Spectrum Bidirectional::trace(Vec3 p, Vec3 n, const PathStart& start, RandomStream& random, unsigned long long& rays,
                               const Monitor& monitor) const {
-  const PatchSet& patches = light_.problem.patches;
-  const BothEnds ends(light_, emission_, rays);
-  const auto u = sobol4(start.number, start.key + 3);
-  const std::vector<ParticleVertex> particle = ends.particle(sobol4(start.number, start.key + 4)[0], u, random);
+  const Problem& problem = light_.problem;
+  const BothEnds ends(light_, emission_, scene_, rays);
+  const std::vector<ParticlePlace> particle =
+      ends.particle(sobol4(start.number, start.key + 4)[0], sobol4(start.number, start.key + 3), random);
 
-  Spectrum E(0.0), throughput(1.0);
-  double before = 0;
+  Spectrum E(0.0);
+  EyePlace z;
+  z.at.x = p, z.at.n = n;
   double through_slits = 1;  // what they leave; no reason to end a path that was sent there
-  auto [square_of_way, choice, opening, number, key] = start;
+  std::array<double, 2> square_of_way = start.direction;
+  std::array<double, 3> choice = start.light, opening = start.opening;
   constexpr unsigned kBouncesBetween = 1 << 10;
   for (unsigned bounce = 1;; ++bounce) {
     if (bounce % kBouncesBetween == 0 && monitor.should_stop()) return E;
-    if (!light_.sampler.empty()) E += throughput * ends.by_shadow_ray(p, n, before, choice);
-    if (!light_.openings.empty()) E += throughput * ends.through_opening(p, n, before, opening);
-    for (const ParticleVertex& y : particle) E += throughput * ends.joined(p, n, before, y);
-    const double survival = std::min(1.0, throughput.max() / (kSafe * through_slits));
+    if (!light_.sampler.empty()) E += z.throughput * ends.by_shadow_ray(z, choice);
+    if (!light_.openings.empty()) E += z.throughput * ends.through_opening(z, opening);
+    for (const ParticlePlace& y : particle) E += z.throughput * ends.joined(z, y);
+    const double survival = std::min(1.0, (z.throughput * z.at.albedo()).max() / (kSafe * through_slits));
     if (!(random.uniform() < survival)) return E;
-    throughput *= 1 / survival;
 
-    const WayOn way = way_on(light_, p, n, square_of_way, random);
-    if (!(way.factor > 0)) return E;
-    throughput *= way.factor;
-    if (way.by_slit) through_slits *= std::min(1.0, way.factor);
-    const Ray ray{p, way.direction};
-    const Hit hit = one_way(light_.problem.rays, patches, ray, random);
+    const PathWay way = way_from_eye(light_, z.at, square_of_way, random);
+    Spectrum throughput = z.throughput * way.factor / survival;
+    if (throughput.is_black()) return E;
+    through_slits *= way.by_slits;
+    const Vec3& d = way.direction;
+    const Ray ray{z.at.x, d};
+    const Hit hit = one_way(scene_, problem.patches, ray, random);
     ++rays;
     throughput *= hit.transmittance;
     if (hit.escaped()) {
       const Spectrum L = light_.sky(hit.direction(ray));
       if (L.is_black()) return E;
-      const PathEnd end = ends.end_in_sky(p, n, way.direction, way.density, hit);
-      return E + throughput * L * (std::numbers::pi * end.met / end.all(before));
+      const PathEnd end = ends.end_in_sky(z.at, d, way.density, hit);
+      return E + throughput * L * (std::numbers::pi * end.met / end.all(z.before(d)));
     }
     if (!hit.patch.valid()) return E;
-    const double cos_x = std::max(-dot(patches.normal[hit.patch], hit.direction(ray)), kGrazing),
-                 cos_p = dot(n, way.direction);
-    const Spectrum M = patches.M[hit.patch];
-    if (!M.is_black()) {
-      const PathEnd end = ends.end_on_patch(hit.patch, n, way.direction, way.density,
-                                            light_.sampler.density(hit, p, n, way.direction, false));
-      E += throughput * M * (end.met / end.all(before));
+    if (const Spectrum M = problem.patches.M[hit.patch]; !M.is_black()) {
+      const PathEnd end =
+          ends.end_on_patch(hit.patch, z.at, d, way.density, light_.sampler.density(hit, z.at.x, z.at.n, d, false));
+      E += throughput * M * (end.met / end.all(z.before(d)));
     }
-    const auto on = patches.scatter(hit.patch, patches.scatters_through(hit.patch) ? random.uniform() : 0);
-    throughput *= on.share;
-    if (throughput.is_black()) return E;
-    const Vec3 x = in_plane_of(patches, hit.patch, hit.position(ray));
-    before = joints_before(
-        path_part(way.density, cos_p, cos_x, square(x - p), ends.survival(hit.patch), !hit.reflected), before);
-    n = on.normal;
-    p = light_.problem.rays.off_surface(x, n);
+    const PathArrival arrival = arrival_of(problem, hit, ray);
+    EyePlace next{place_of(problem, hit, arrival, random), throughput};
+    next.at.diffusely_back = arrival.cosine / std::numbers::pi;
+    next.survival = ends.survival(hit.patch, next.at);
+    const double d2 = square(arrival.on - z.at.x);
+    next.from_eye = way.density * arrival.cosine / d2;
+    next.of_light = dot(z.at.n, d) / d2;
+    next.can_join = !hit.reflected;
+    next.before_last = z.before(d);
+    next.is_receiver = false;
+    if ((next.throughput * next.at.albedo()).is_black()) return E;
+    z = next;
     choice = {random.uniform(), random.uniform(), random.uniform()};
     if (!light_.openings.empty()) opening = {random.uniform(), random.uniform(), random.uniform()};
     square_of_way = {random.uniform(), random.uniform()};

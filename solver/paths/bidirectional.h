@@ -19,7 +19,8 @@ namespace clerestory {
 class Bidirectional {
  public:
   /// light  outlives this.
-  explicit Bidirectional(const Illumination& light) : light_(light), emission_(light) {}
+  explicit Bidirectional(const Illumination& light)
+      : light_(light), scene_(light.problem.rays.without_gloss()), emission_(light) {}
 
   /// Arguments as of trace_path().
   Spectrum trace(Vec3 p, Vec3 n, const PathStart& start, RandomStream& random, unsigned long long& rays,
@@ -29,6 +30,7 @@ class Bidirectional {
 
  private:
   const Illumination& light_;
+  RayScene scene_;
   Emission emission_;
 };
 

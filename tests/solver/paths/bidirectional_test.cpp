@@ -171,6 +171,42 @@ TEST(Bidirectional, FindsALampThatShinesOnTheCeilingAlone) {
   EXPECT_LT(room.from_both_ends(p, n, 1, 4096).std_error[0], 0.35 * room.by_path(p, n, 1, 4096).std_error[0]);
 }
 
+TEST(Bidirectional, KnowsTheLightOfAClosedRoomOfGlossThatGlowsAllOver) {
+  for (const Gloss& gloss : {Gloss{Spectrum(0.4), {}, 0.3}, Gloss{Spectrum(0.4), 5.0}}) {
+    PatchBuilder b;
+    b.glossy(0.3, gloss, 100).box({0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 1}, {1, 1, 1}, true);
+    const Ready room(b.build());
+    // Of a lobe of modified Phong less goes on than its number where it is cut by the surface.
+    const PathEstimate e = room.from_both_ends({0.2, 0.3, room.rays.lift()}, {0, 0, 1}, 1, 8192);
+    const PathEstimate exact = gloss.exponent ? room.by_path({0.2, 0.3, room.rays.lift()}, {0, 0, 1}, 2, 8192)
+                                              : PathEstimate{Spectrum(100 / (1 - 0.3 - 0.4)), Spectrum(0.0)};
+    EXPECT_NEAR(e.E[0], exact.E[0], 4 * std::hypot(e.std_error[0], exact.std_error[0]));
+    EXPECT_LT(e.std_error[0], 0.02 * exact.E[0]);
+  }
+}
+
+class BidirectionalByLobe : public ::testing::TestWithParam<Gloss> {};
+TEST_P(BidirectionalByLobe, MeansTheLightOfPathsInAPolishedRoom) {
+  // Lamps, a panel, sky and sun by a hole; floor and a wall are glossy, and so is a table below.
+  PatchBuilder b(0.5);
+  b.rectangle({0, 0, 2.5}, {0, 3, 0}, {3, 0, 0}), b.rectangle({0, 0, 0}, {0, 0, 2.5}, {4, 0, 0});
+  b.rectangle({0, 3, 0}, {4, 0, 0}, {0, 0, 2.5}), b.rectangle({4, 0, 0}, {0, 0, 2.5}, {0, 3, 0});
+  b.glossy(0.2, GetParam()).rectangle({0, 0, 0}, {4, 0, 0}, {0, 3, 0});
+  b.glossy(0.3, GetParam()).rectangle({0, 0, 0}, {0, 3, 0}, {0, 0, 2.5});
+  b.glossy(0.1, GetParam()).box({1.5, 1, 0.7}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.05}, {1, 1, 1}, false);
+  b.material(0.3, 50).rectangle({1, 2.99, 1.2}, {0.5, 0, 0}, {0, 0, 0.4});
+  b.glass(0.7).rectangle({3, 0.5, 0}, {0, 2, 0}, {0, 0, 2.5});
+  b.mirror(0.8).rectangle({0.5, 0.02, 0.5}, {0, 0, 1}, {1, 0, 0});
+  LightSpec spec;
+  spec.luminaires = {test::point_lamp({1, 1, 2}, 30), test::point_lamp({2, 2, 0.4}, 10)};
+  spec.sky = Sky{.model = SkyModel::cie_overcast, .horizontal_irradiance = Spectrum(60)};
+  spec.suns = {{normalized(Vec3{0.3, 0.2, 1}), Spectrum(200)}};
+  expect_the_light_of_paths({b.build(), spec}, 24, 1024);
+}
+INSTANTIATE_TEST_SUITE_P(, BidirectionalByLobe,
+                         ::testing::Values(Gloss{Spectrum(0.5), 0.0}, Gloss{Spectrum(0.5), 20.0},
+                                           Gloss{Spectrum(0.4), {}, 0.6}, Gloss{Spectrum(0.5), {}, 0.3}));
+
 class ShippedScene : public ::testing::TestWithParam<const char*> {};
 TEST_P(ShippedScene, HasTheSameLightFromBothEnds) {
   const std::filesystem::path folder = std::filesystem::path(CLERESTORY_SOURCE_DIR) / "data/scenes";

@@ -69,9 +69,11 @@ double square(const Vec3& a) { return dot(a, a); }
 /// Both ends of a problem, for one path.
 class BothEnds {
  public:
-  BothEnds(const Illumination& light, const Emission& emission, const RayScene& scene, unsigned long long& rays)
+  BothEnds(const Illumination& light, const Emission& emission, const RayScene& scene,
+           const Bidirectional::Images& images, unsigned long long& rays)
       : light_(light),
         emission_(emission),
+        images_(images),
         problem_(light.problem),
         scene_(scene),
         patches_(light.problem.patches),
@@ -106,50 +108,105 @@ class BothEnds {
 
  private:
   struct FirstLeg {
-    Ray ray;
+    Ray sent, ray;  ///< from the light; the last part, that hit's is
     Hit hit;
-    Spectrum flux{0.0};
+    Spectrum flux{0.0};                    ///< that arrives [W]
+    std::uint32_t light = Emitted::kNone;  ///< luminaire or sun that shines there, perhaps an image
+    Spectrum passes{1.0};                  ///< of that, share that panes and mirrors leave
+    double r2 = 0;                         ///< squared distance of a luminaire, or its image
   };
   FirstLeg first_leg(const Emitted& e, const std::array<double, 4>& u, RandomStream& random) const;
-  FirstLeg leg(const Ray& ray, const Spectrum& flux, RandomStream& random) const;
+  FirstLeg delta_leg(std::uint32_t light, const Ray& sent, const Spectrum& flux, RandomStream& random) const;
   PathEnd end_of_particle(const Emitted& e, const FirstLeg& first, const PathArrival& at) const;
+  /// Of a sun's particle on its way to p, per area at right angles to it: that of the sun of this number, or of one
+  /// that it shows; d: to it.
+  double density_of_sun(std::uint32_t number, Vec3 p, Vec3 d) const {
+    const auto luminaires = static_cast<std::uint32_t>(problem_.lights.luminaires.size());
+    const PlacedSun& sun = problem_.lights.suns[number - luminaires];
+    for (std::size_t k = sun.way.count; k-- > 0;) {
+      const MirrorPlane& plane = scene_.mirrors()[sun.way.plane[k]];
+      p = plane.image_of(p), d = plane.image_of_direction(d);
+    }
+    const std::uint32_t source = sun.is_image() ? luminaires + sun.shows : number;
+    return emission_.density_of_sun(source, p, -d) / density_in_disc(problem_.lights.suns[source - luminaires], d);
+  }
   bool is_luminaire(std::uint32_t light) const { return light < problem_.lights.luminaires.size(); }
 
   const Illumination& light_;
   const Emission& emission_;
+  const Bidirectional::Images& images_;
   const Problem& problem_;
   const RayScene& scene_;  ///< without gloss
   const PatchSet& patches_;
   unsigned long long& rays_;
 };
 
-BothEnds::FirstLeg BothEnds::leg(const Ray& ray, const Spectrum& flux, RandomStream& random) const {
-  FirstLeg first{ray, one_way(scene_, patches_, ray, random)};
+/// On along the ray, or where a pane or mirror turns it, as one_way() does, but that only ways with an image of the
+/// light count, and it says which.
+BothEnds::FirstLeg BothEnds::delta_leg(std::uint32_t light, const Ray& sent, const Spectrum& flux,
+                                       RandomStream& random) const {
+  FirstLeg first{sent, sent, scene_.first_hit(patches_, sent), flux, light};
   ++rays_;
-  if (first.hit.patch.valid()) first.flux = flux * first.hit.transmittance;
+  if (!images_.empty()) {
+    MirrorWay way;
+    for (;;) {
+      const bool ends_on_mirror = first.hit.reflected;
+      const std::vector<Turn> turns = scene_.turns(first.ray);
+      double on = ends_on_mirror ? 0 : luminous_mean(first.hit.transmittance), all = on;
+      for (const Turn& turn : turns) all += luminous_mean(turn.share);
+      if (!(all > 0)) return {};
+      double pick = random.uniform() * all - on;
+      if (pick < 0 || turns.empty()) {
+        first.flux *= all / on;
+        break;
+      }
+      const Turn* next = &turns.back();
+      for (const Turn& turn : turns) {
+        if (pick >= 0 && pick < luminous_mean(turn.share)) next = &turn;
+        pick -= luminous_mean(turn.share);
+      }
+      if (next->plane == kNoPlane || way.count == MirrorWay::kMost) return {};
+      way = way.over(next->plane);
+      first.flux *= next->share * (all / luminous_mean(next->share));
+      first.passes *= next->share;
+      first.ray = next->ray;
+      first.hit = scene_.first_hit(patches_, first.ray);
+      ++rays_;
+    }
+    if (!way.empty()) {
+      const auto image = images_.find({light, way});
+      if (image == images_.end()) return {};
+      first.light = image->second;
+    }
+  }
+  if (!first.hit.patch.valid() || first.hit.reflected) return {};
+  first.flux *= first.hit.transmittance;
+  first.passes *= first.hit.transmittance;
   return first;
 }
 
 /// Where a particle first falls. Luminaires shine from all over their opening near by and from its middle farther away:
 /// it is sent from both, and counts where that is where it comes from.
 BothEnds::FirstLeg BothEnds::first_leg(const Emitted& e, const std::array<double, 4>& u, RandomStream& random) const {
-  if (!is_luminaire(e.light)) {
-    FirstLeg first = leg(e.ray, e.flux, random);
-    const bool is_sun = e.light != Emitted::kNone;
-    if (is_sun && first.hit.reflected) first.flux = Spectrum(0.0);  // its image's
+  if (e.light == Emitted::kNone) {
+    FirstLeg first{e.ray, e.ray, one_way(scene_, patches_, e.ray, random)};
+    ++rays_;
+    if (first.hit.patch.valid()) first.flux = e.flux * first.hit.transmittance;
     return first;
   }
+  if (!is_luminaire(e.light)) return delta_leg(e.light, e.ray, e.flux, random);
   const PlacedLuminaire& luminaire = problem_.lights.luminaires[e.light];
   const Vec3& d = e.ray.direction;
   const auto from = [&](const Vec3& q) {
-    FirstLeg first = leg({ray_start(luminaire, q, d), d}, e.flux, random);
+    FirstLeg first = delta_leg(e.light, {ray_start(luminaire, q, d), d}, e.flux, random);
     if (first.flux.is_black()) return first;
-    const Vec3 x = first.hit.position(first.ray);
-    if (first.hit.reflected || light_point(luminaire, x, u[0], u[1]) != q) first.flux = Spectrum(0.0);
+    const Luminaire& shown = problem_.lights.luminaires[first.light];
+    const Vec3 x = first.hit.position(first.ray), from_there = light_point(shown, x, u[0], u[1]);
+    if ((q == luminaire.position) != (from_there == shown.position)) return FirstLeg{};
     // At points luminaires do not dazzle: less arrives very near them.
-    const double r2 = square(x - q);
-    const double whole = luminous_mean(intensity(luminaire, d)) / r2;
-    const double arrives = luminous_mean(open_irradiance(luminaire, q, q + d * std::sqrt(r2), -d));
+    first.r2 = square(x - from_there);
+    const double whole = luminous_mean(intensity(luminaire, d)) / first.r2;
+    const double arrives = luminous_mean(open_irradiance(luminaire, q, q + d * std::sqrt(first.r2), -d));
     if (whole > 0) first.flux *= std::min(1.0, arrives / whole);
     return first;
   };
@@ -170,7 +227,7 @@ PathEnd BothEnds::end_of_particle(const Emitted& e, const FirstLeg& first, const
     const bool can_choose = !first.hit.reflected && light_.sampler.is_bright(e.patch);
     const double to_patch =
         can_choose ? light_.sampler.density(e.patch, light_.sampler.receiver(at.x, at.n), first.hit.distance,
-                                            dot(patches_.normal[e.patch], first.ray.direction), false)
+                                            dot(patches_.normal[e.patch], first.sent.direction), false)
                    : 0;
     return {0, to_patch, e.density_place * at.cosine / std::numbers::pi};
   }
@@ -179,10 +236,11 @@ PathEnd BothEnds::end_of_particle(const Emitted& e, const FirstLeg& first, const
         first.hit.reflected || light_.openings.empty() ? 0 : light_.openings.preference(at.x, at.n, at.back);
     return {0, by_opening, e.density_place * e.density_direction * at.cosine};
   }
-  const double by_shadow_ray = light_.sampler.probability(e.light, at.x, at.n);
-  if (!is_luminaire(e.light)) return {0, by_shadow_ray, e.density_place * at.cosine};
-  return {0, by_shadow_ray,
-          e.density_place * e.density_direction * at.cosine / square(first.hit.position(first.ray) - first.ray.origin)};
+  const double by_shadow_ray = light_.sampler.probability(first.light, at.x, at.n);
+  // Of several ways, each is taken by what it leaves of the light.
+  const double chance = first.light == e.light ? 1 : luminous_mean(first.passes);
+  if (!is_luminaire(e.light)) return {0, by_shadow_ray, e.density_place * at.cosine * chance};
+  return {0, by_shadow_ray, e.density_place * e.density_direction * at.cosine / first.r2 * chance};
 }
 
 std::vector<ParticlePlace> BothEnds::particle(double pick, const std::array<double, 4>& u, RandomStream& random) const {
@@ -235,24 +293,25 @@ Spectrum BothEnds::by_shadow_ray(const EyePlace& z, const std::array<double, 3>&
   const Vec3 to = s.end - p, d = normalized(to);
   const Spectrum reflected = s.irradiance * z.at.reflects(d);
   if (reflected.is_black()) return reflected;
-  double weight = 1;
-  const double cosine = dot(n, d), before = z.before(d);
+  ++rays_;
+  const Spectrum passes = scene_.transmittance_by_mirrors(p, s.end, s.way);
+  if (passes.is_black()) return passes;
+  const double before = z.before(d), cosine = dot(n, d);
+  PathEnd end{0, s.probability};
   if (s.patch.valid()) {
-    const PathEnd end = end_on_patch(s.patch, z.at, d, density_of_way(z.at, d), s.density);
-    weight = end.shadow_ray / end.all(before);
-  } else if (s.way.empty() && before > 0) {
-    PathEnd end{0, s.probability};
+    end = end_on_patch(s.patch, z.at, d, density_of_way(z.at, d), s.density);
+  } else if (before > 0) {
     if (is_luminaire(s.light)) {
-      end.from_light = emission_.probability_of_luminaire(s.light) * emission_.density_of_direction(s.light, -d) *
+      const PlacedLuminaire& luminaire = problem_.lights.luminaires[s.light];
+      const std::uint32_t source = luminaire.is_image() ? luminaire.shows : s.light;
+      end.from_light = emission_.probability_of_luminaire(source) * emission_.density_of_direction(s.light, -d) *
                        cosine / square(to);
     } else {
-      const Sun& sun = problem_.lights.suns[s.light - problem_.lights.luminaires.size()];
-      end.from_light = emission_.density_of_sun(s.light, p, -d) / density_in_disc(sun, d) * cosine;
+      end.from_light = density_of_sun(s.light, p, d) * cosine;
     }
-    weight = end.shadow_ray / end.all(before);
+    if (!s.way.empty()) end.from_light *= luminous_mean(passes);
   }
-  ++rays_;
-  return reflected * weight * scene_.transmittance_by_mirrors(p, s.end, s.way);
+  return reflected * passes * (end.shadow_ray / end.all(before));
 }
 
 Spectrum BothEnds::through_opening(const EyePlace& z, const std::array<double, 3>& u) const {
@@ -287,10 +346,22 @@ Spectrum BothEnds::joined(const EyePlace& z, const ParticlePlace& y) const {
 
 }  // namespace
 
+Bidirectional::Bidirectional(const Illumination& light)
+    : light_(light), scene_(light.problem.rays.without_gloss()), emission_(light) {
+  const Lights& lights = light.problem.lights;
+  const auto luminaires = static_cast<std::uint32_t>(lights.luminaires.size());
+  for (std::uint32_t k = 0; k < luminaires; ++k)
+    if (const PlacedLuminaire& luminaire = lights.luminaires[k]; luminaire.is_image())
+      images_[{luminaire.shows, luminaire.way}] = k;
+  for (std::uint32_t k = 0; k < lights.suns.size(); ++k)
+    if (const PlacedSun& sun = lights.suns[k]; sun.is_image())
+      images_[{luminaires + sun.shows, sun.way}] = luminaires + k;
+}
+
 Spectrum Bidirectional::trace(Vec3 p, Vec3 n, const PathStart& start, RandomStream& random, unsigned long long& rays,
                               const Monitor& monitor) const {
   const Problem& problem = light_.problem;
-  const BothEnds ends(light_, emission_, scene_, rays);
+  const BothEnds ends(light_, emission_, scene_, images_, rays);
   const std::vector<ParticlePlace> particle =
       ends.particle(sobol4(start.number, start.key + 4)[0], sobol4(start.number, start.key + 3), random);
 

@@ -1,6 +1,10 @@
 #pragma once
 // Paths from both ends: from the receiving point and from the lights, joined by shadow rays.
 
+#include <cstdint>
+#include <map>
+#include <utility>
+
 #include "solver/particles/emission.h"
 #include "solver/paths/path_tracer.h"
 
@@ -12,15 +16,18 @@ namespace clerestory {
 /// balance heuristic (path_balance.h). Source: Veach, "Robust Monte Carlo methods for light transport simulation",
 /// 1997, chapter 10.
 ///
-/// Mirrors and panes turn either half, and what is turned is not joined. Luminaires and suns are met over them by
-/// shadow rays to their images alone: the light of those is the same for all methods.
+/// Mirrors and panes turn either half, and what is turned is not joined. Particles of luminaires and suns that they turn
+/// first count on those ways that have an image, which shadow rays look for as well: the light of these is the same for
+/// all methods. Lobes are evaluated, chosen and counted in the weights like diffuse reflection.
 ///
 /// Thread safe.
 class Bidirectional {
  public:
   /// light  outlives this.
-  explicit Bidirectional(const Illumination& light)
-      : light_(light), scene_(light.problem.rays.without_gloss()), emission_(light) {}
+  explicit Bidirectional(const Illumination& light);
+
+  /// Images of luminaires and suns, by number of the light that they show and the way over planes.
+  using Images = std::map<std::pair<std::uint32_t, MirrorWay>, std::uint32_t>;
 
   /// Arguments as of trace_path().
   Spectrum trace(Vec3 p, Vec3 n, const PathStart& start, RandomStream& random, unsigned long long& rays,
@@ -30,7 +37,8 @@ class Bidirectional {
 
  private:
   const Illumination& light_;
-  RayScene scene_;
+  RayScene scene_;  ///< without gloss
+  Images images_;
   Emission emission_;
 };
 

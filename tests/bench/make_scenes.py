@@ -204,14 +204,14 @@ def room_tray(folder):
 def room_mirror(folder):
     """A shaft with a panel in its top and a mirror at its foot, which turns the light on to a wall."""
     def lamp(m):
-        x, y, z, w, top = 2.6, 2.1, 2.0, 0.2, 0.799
+        x, y, z, w, top = 2.6, 2.1, 1.9, 0.4, 0.899
         along, up = (0, w, 0), (0, 0, top - w)
         m.quad("body", (x, y, z + w), along, up, False)
         m.quad("body", (x + w, y, z + w), up, along, False)
         for side in (y, y + w):
             m.quad("body", (x, side, z), (w, 0, 0), (0, 0, top), False)
         m.quad("mirror", (x, y, z + w), (w, 0, -w), along, False)
-        m.quad("lamp", (x + 0.05, y + 0.05, z + top - 0.01), (0, 0.1, 0), (0.1, 0, 0), False)
+        m.quad("lamp", (x + 0.05, y + 0.05, z + top - 0.01), (0, 0.3, 0), (0.3, 0, 0), False)
     materials = dict(GREY, mirror={"type": "mirror", "reflectance": 0.9},
                      lamp={"reflectance": 0.5, "exitance": 10000, "sides": 1})
     write_scene(folder, "room_mirror", room_with_blocks(lamp), {"materials": materials})

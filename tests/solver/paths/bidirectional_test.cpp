@@ -171,6 +171,38 @@ TEST(Bidirectional, FindsALampThatShinesOnTheCeilingAlone) {
   EXPECT_LT(room.from_both_ends(p, n, 1, 4096).std_error[0], 0.35 * room.by_path(p, n, 1, 4096).std_error[0]);
 }
 
+TEST(Bidirectional, MeansTheLightOfPathsBetweenMirrorsAndPanes) {
+  // A lamp and the sun over two mirrors and a pane, in all ways that have images.
+  PatchBuilder b(0.6);
+  b.rectangle({0, 0, 0}, {4, 0, 0}, {0, 3, 0}), b.rectangle({0, 0, 0}, {0, 0, 2.5}, {4, 0, 0});
+  b.rectangle({0, 3, 0}, {4, 0, 0}, {0, 0, 2.5}), b.rectangle({0, 0, 0}, {0, 3, 0}, {0, 0, 2.5});
+  b.rectangle({4, 0, 0}, {0, 0, 2.5}, {0, 3, 0}), b.rectangle({0, 0, 2.5}, {0, 3, 0}, {3, 0, 0});
+  b.mirror(0.9).rectangle({0.01, 0.5, 0.5}, {0, 2, 0}, {0, 0, 1.5}),
+      b.rectangle({3.99, 0.5, 0.5}, {0, 2, 0}, {0, 0, 1.5});
+  b.rectangle({2.6, 1, 0.05}, {1, 0, 0}, {0, 1, 0});
+  b.glass(0.6).rectangle({1, 0, 0}, {0, 3, 0}, {0, 0, 2.5});
+  LightSpec spec;
+  spec.luminaires = {test::point_lamp({2, 1.2, 1}, 30)};
+  spec.suns = {{normalized(Vec3{0.1, 0.1, 1}), Spectrum(100)}};
+  const Ready room(b.build(), spec);
+  ASSERT_GT(room.lights.luminaires.size(), 5u);
+  ASSERT_GT(room.lights.suns.size(), 1u);
+  expect_the_light_of_paths(room, 32, 2048);
+}
+
+TEST(Bidirectional, FindsALampThatAMirrorThrowsOnTheWall) {
+  // A spot that shines down on a mirror at its foot, which turns it to the wall at x = 4.
+  PatchBuilder b(0.6);
+  b.box({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2.5}, {1, 1, 1}, true);
+  b.mirror(0.9).rectangle({1, 1, 0.6}, {0.2, 0, -0.2}, {0, 0.2, 0});
+  LightSpec spec;
+  spec.luminaires = {test::spot_lamp({1.1, 1.1, 0.9}, {0, 0, -1}, 100, 0.1, 0.15)};
+  const Ready room(b.build(), spec);
+  expect_the_light_of_paths(room, 24, 2048);
+  const Vec3 p{3, 2, 0.8}, n{0, 0, 1};
+  EXPECT_LT(room.from_both_ends(p, n, 1, 4096).std_error[0], 0.25 * room.by_path(p, n, 1, 4096).std_error[0]);
+}
+
 TEST(Bidirectional, KnowsTheLightOfAClosedRoomOfGlossThatGlowsAllOver) {
   for (const Gloss& gloss : {Gloss{Spectrum(0.4), {}, 0.3}, Gloss{Spectrum(0.4), 5.0}}) {
     PatchBuilder b;

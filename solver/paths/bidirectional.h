@@ -16,9 +16,9 @@ namespace clerestory {
 /// balance heuristic (path_balance.h). Source: Veach, "Robust Monte Carlo methods for light transport simulation",
 /// 1997, chapter 10.
 ///
-/// Mirrors and panes turn either half, and what is turned is not joined. Particles of luminaires and suns that they turn
-/// first count on those ways that have an image, which shadow rays look for as well: the light of these is the same for
-/// all methods. Lobes are evaluated, chosen and counted in the weights like diffuse reflection.
+/// Mirrors and panes turn either half, and what is turned is not joined. Particles of luminaires and suns that they
+/// turn first count on those ways that have an image, which shadow rays look for as well: the light of these is the
+/// same for all methods. Lobes are evaluated, chosen and counted in the weights like diffuse reflection.
 ///
 /// Thread safe.
 class Bidirectional {

@@ -76,7 +76,7 @@ void warn_about_error(const Solved& s, Observer& observer) {
                 percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), more than the " + percent(stated) +
                 " that this accuracy stands for" + (is_in_room ? rooms_above(stated, *s.error, worst) : std::string()) +
                 ": " +
-                (s.settings.solve.method == Method::path
+                (is_by_paths(s.settings.solve.method)
                      ? "too few paths find the light. Do not rely on single values; try --accuracy fine."
                      : "light changes faster than the elements show, beside a lamp or a narrow gap. Do not rely on "
                        "single values of the picture; " +

@@ -54,9 +54,19 @@ bool starts_with_any(const std::string& text, const std::vector<std::string>& be
 
 /// The rooms of solver/, lowest floor first: a room may include itself and the floors below it, no neighbour.
 const std::vector<std::vector<std::string>> kFloors = {
-    {"model"},     {"geometry"}, {"sampling", "visibility"}, {"form_factors", "view"},
-    {"lights"},    {"openings"}, {"illumination"},           {"spaces", "gather", "paths"},
-    {"hierarchy"}, {"methods"},  {"evaluate", "annual"},     {"dimming"},
+    {"model"},
+    {"geometry"},
+    {"sampling", "visibility"},
+    {"form_factors", "view"},
+    {"lights"},
+    {"openings"},
+    {"illumination"},
+    {"particles"},
+    {"spaces", "gather", "paths"},
+    {"hierarchy"},
+    {"methods"},
+    {"evaluate", "annual"},
+    {"dimming"},
     {"run"},
 };
 

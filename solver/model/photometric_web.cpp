@@ -37,11 +37,23 @@ double interpolated(const std::vector<double>& at, const std::vector<double>& va
   return value[p.below] * (1 - p.part) + value[p.below + 1] * p.part;
 }
 
-/// Integrals over [a, b] of (1 - t) w(x) and t w(x), t = (x - a) / (b - a), w = sin or cos of x; a and b in radians.
-struct Weights {
-  double low, high;
-};
-Weights weights(double a, double b, bool sine) {
+/// Integral over ascending angles [deg] of the function linear between value(i), with weight sin, cos or 1.
+enum class Weight { sine, cosine, one };
+template <class Value>
+double integral(const std::vector<double>& at, Weight weight, const Value& value) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < at.size(); ++i) {
+    const double a = at[i] * kDegree, b = at[i + 1] * kDegree;
+    const AngleWeights w =
+        weight == Weight::one ? AngleWeights{(b - a) / 2, (b - a) / 2} : angle_weights(a, b, weight == Weight::sine);
+    sum += value(i) * w.low + value(i + 1) * w.high;
+  }
+  return sum;
+}
+
+}  // namespace
+
+AngleWeights angle_weights(double a, double b, bool sine) {
   const double h = b - a;
   // Antiderivative of w, and of that one; the second integral is [t W] - 1/h [WW].
   const auto W = [&](double x) { return sine ? -std::cos(x) : std::sin(x); };
@@ -53,21 +65,6 @@ Weights weights(double a, double b, bool sine) {
   const double high = W(b) - (WW(b) - WW(a)) / h;
   return {W(b) - W(a) - high, high};
 }
-
-/// Integral over ascending angles [deg] of the function linear between value(i), with weight sin, cos or 1.
-enum class Weight { sine, cosine, one };
-template <class Value>
-double integral(const std::vector<double>& at, Weight weight, const Value& value) {
-  double sum = 0;
-  for (std::size_t i = 0; i + 1 < at.size(); ++i) {
-    const double a = at[i] * kDegree, b = at[i + 1] * kDegree;
-    const Weights w = weight == Weight::one ? Weights{(b - a) / 2, (b - a) / 2} : weights(a, b, weight == Weight::sine);
-    sum += value(i) * w.low + value(i + 1) * w.high;
-  }
-  return sum;
-}
-
-}  // namespace
 
 Vec3 beam_axis(WebType type) { return type == WebType::A ? Vec3{1, 0, 0} : Vec3{0, 0, -1}; }
 

@@ -65,6 +65,13 @@ double peak_candela(const PhotometricWeb& web);
 /// Flux [lm]: the exact integral of the intensity, linear between the angles, over the sphere.
 double luminous_flux(const PhotometricWeb& web);
 
+/// Integrals over [a, b] [rad] of (1 - t) w(x) and t w(x), t = (x - a) / (b - a), w = sine or cosine of x: of intensity
+/// that is linear between two angles.
+struct AngleWeights {
+  double low, high;
+};
+AngleWeights angle_weights(double a, double b, bool sine);
+
 /// Factor on the light when the luminaire is tilted out of its upright position.
 double tilt_factor(const PhotometricWeb& web, double tilt_deg);
 

@@ -65,7 +65,7 @@ TEST(Tradeoff, SolvesByEveryMethodAndTellsTimeMemoryAndErrorOfEach) {
   EXPECT_EQ(names, (std::set<std::string>{"index.html", "tradeoff.csv", "tradeoff.png", "tradeoff.svg"}));
   EXPECT_NE(run.err.find("max_element"), std::string::npos) << "what the scene says for all runs is told";
   const auto rows = rows_of(out / "new/dir/tradeoff.csv");
-  EXPECT_EQ(rows.size(), 15u) << run.err;
+  EXPECT_EQ(rows.size(), 18u) << run.err;
   for (const auto& [name, row] : rows) {
     SCOPED_TRACE(name);
     const auto number = [&](const char* column) { return std::stod(row.at(column)); };

@@ -252,7 +252,7 @@ void add_solve_command(CLI::App& program, Task& task) {
   SolveArguments& s = arguments->solve;
   add_checked_word(
       command, "--method", s.method, problem_with_method,
-      "hierarchical, progressive, gauss-seidel, jacobi, or path, the unbiased reference (default: hierarchical)");
+      "hierarchical, progressive, gauss-seidel, jacobi, particles, or path, the unbiased reference (default: hierarchical)");
   add_checked_word(command, "--accuracy", s.accuracy, problem_with_accuracy,
                    "draft, standard or fine (default: standard)");
   add_checked_word(command, "--oracle", s.oracle, problem_with_oracle,

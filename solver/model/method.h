@@ -5,7 +5,7 @@
 
 namespace clerestory {
 
-enum class Method { hierarchical, progressive, gauss_seidel, jacobi, path };
+enum class Method { hierarchical, progressive, gauss_seidel, jacobi, path, particles };
 enum class Accuracy { draft, standard, fine };
 /// By what the hierarchical method decides which elements to halve and where to link. error: by how much light varies
 /// inside of them, told by rays. bf: by the flux at stake on a link, rho_p F_pq B_q A_p, as the classic method has it.
@@ -15,7 +15,8 @@ enum class Oracle { error, bf };
 constexpr bool has_matrix(Method m) { return m == Method::gauss_seidel || m == Method::jacobi; }
 
 /// In the order of the enumerators.
-inline constexpr std::string_view kMethodNames[] = {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"};
+inline constexpr std::string_view kMethodNames[] = {"hierarchical", "progressive", "gauss-seidel",
+                                                    "jacobi",       "path",        "particles"};
 inline constexpr std::string_view kAccuracyNames[] = {"draft", "standard", "fine"};
 inline constexpr std::string_view kOracleNames[] = {"error", "bf"};
 

@@ -176,7 +176,7 @@ TEST(Reflection, AStreetBeforeASunlitGlassFacade) {
     return from_sky(d, random);
   });
   compare(scene, spec, exact, {{"pavement", pavement}, {"house", house}},
-          {Method::progressive, Method::path, Method::gauss_seidel});
+          {Method::progressive, Method::path, Method::particles, Method::gauss_seidel});
 }
 
 PhotonTracer::Photon from_lamp(const Vec3& lamp, PhotonTracer::Random& random) {
@@ -201,7 +201,7 @@ TEST(Reflection, ARoomAtNightBehindItsGlazing) {
   PhotonTracer exact = scene.tracer();
   exact.follow(4'000'000, 100, [&](PhotonTracer::Random& random) { return from_lamp(lamp, random); });
   compare(scene, spec, exact, {{"floor", 0}, {"face", face}},
-          {Method::progressive, Method::gauss_seidel, Method::path});
+          {Method::progressive, Method::gauss_seidel, Method::path, Method::particles});
 }
 
 TEST(Reflection, ALiftBetweenTwoMirrors) {
@@ -220,7 +220,8 @@ TEST(Reflection, ALiftBetweenTwoMirrors) {
   spec.luminaires = {test::point_lamp(lamp, 100)};
   PhotonTracer exact = scene.tracer();
   exact.follow(1'000'000, 100, [&](PhotonTracer::Random& random) { return from_lamp(lamp, random); });
-  compare(scene, spec, exact, {{"floor", floor}, {"back", back}}, {Method::progressive, Method::path});
+  compare(scene, spec, exact, {{"floor", floor}, {"back", back}},
+          {Method::progressive, Method::path, Method::particles});
 }
 
 /// Irradiance at p straight from lamps and suns.
@@ -359,7 +360,7 @@ TEST_P(CubeOfPanes, LightInItEndsThoughTheyLetNothingPass) {
     EXPECT_NEAR(found / expected, 1, 3e-3) << T;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes, testing::Values(Method::progressive, Method::path));
+INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes, testing::Values(Method::progressive, Method::path, Method::particles));
 
 TEST(Reflection, TheShareOfAnImageIsWhatIsLeftOnItsWay) {
   PatchBuilder b(0.0);

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 
+#include "solver/model/random_stream.h"
 #include "solver/model/units.h"
+#include "solver/sampling/packed_direction.h"
 #include "solver/sampling/unit_square.h"
-#include "solver/visibility/echoes.h"
 
 namespace clerestory {
 namespace {
 
-constexpr unsigned kBouncesBetween = 1 << 12;  // looks at the monitor: some milliseconds
+constexpr unsigned kLegsBetween = 1 << 12;  // between looks at the monitor: some milliseconds
 
 }  // namespace
 
@@ -29,37 +30,51 @@ ParticleWays follow_particles(const Illumination& light, const Emission& emissio
     RandomStream random(key, k);
     Ray ray = start.ray;
     Spectrum flux = start.flux;
-    for (unsigned bounce = 0;; ++bounce) {
-      if (bounce % kBouncesBetween == kBouncesBetween - 1 && monitor.should_stop()) return ways;
-      const Hit hit = one_way(rays, patches, ray, random);
+    ParticleWay way = ParticleWay::straight;
+    for (unsigned leg = 0;; ++leg) {
+      if (leg % kLegsBetween == kLegsBetween - 1 && monitor.should_stop()) return ways;
+      Echo echo;
+      const Hit hit = rays.first_hit(patches, ray, &echo);
       ++ways.rays;
-      const Spectrum arrives = flux * hit.transmittance;
+      if (hit.reflected && way == ParticleWay::straight) way = ParticleWay::turned;
+      const Spectrum arrives = flux * hit.transmittance, turns_back = flux * echo.share;
       const double before = luminous_mean(flux), lands = luminous_mean(arrives);
       // Of sun and sky counts what arrives on anything.
-      if (from_outside && bounce == 0) ways.energy.emitted += hit.escaped() ? before - lands : before;
-      ways.energy.absorbed += before - lands;
-      if (hit.escaped()) {
-        if (!from_outside || bounce > 0) ways.energy.escaped += lands;
+      if (from_outside && leg == 0) ways.energy.emitted += hit.escaped() ? before - lands : before;
+      if (hit.escaped() && (!from_outside || leg > 0)) ways.energy.escaped += lands;
+
+      // It lands with all that arrives, and goes on either from there or as what was turned back: each in proportion to
+      // its flux, which stays what it was.
+      const bool lands_on_patch = hit.patch.valid() && lands > 0;
+      PatchSet::Scattering on{{}, Spectrum(0.0)};
+      Vec3 x;
+      if (lands_on_patch) {
+        x = in_plane_of(patches, hit.patch, hit.position(ray));
+        ways.landings.push_back(
+            {{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)},
+             {static_cast<float>(arrives[0]), static_cast<float>(arrives[1]), static_cast<float>(arrives[2])},
+             hit.patch.value,
+             pack_direction(-hit.direction(ray)) | static_cast<std::uint32_t>(way) << kDirectionBits});
+        on = patches.scatter(hit.patch, patches.scatters_through(hit.patch) ? random.uniform() : 0);
+      }
+      const Spectrum scattered = arrives * on.share;
+      const double goes_on = luminous_mean(scattered), goes_back = luminous_mean(turns_back);
+      const double reflects = lands_on_patch ? luminous_mean(arrives * patches.albedo(hit.patch)) : 0;
+      ways.energy.absorbed += before - reflects - goes_back - (hit.escaped() ? lands : 0);
+      const double pick = random.uniform() * std::max(before, goes_on + goes_back);
+      if (pick < goes_on) {
+        flux = scattered * (std::max(before, goes_on + goes_back) / goes_on);
+        ray.origin = rays.off_surface(x, on.normal);
+        const double u = random.uniform(), v = random.uniform();
+        ray.direction = cosine_direction(Frame(on.normal), u, v);
+        way = ParticleWay::scattered;
+      } else if (pick < goes_on + goes_back) {
+        flux = turns_back * (std::max(before, goes_on + goes_back) / goes_back);
+        ray = echo.ray;
+        if (way == ParticleWay::straight) way = ParticleWay::turned;
+      } else {
         break;
       }
-      if (!hit.patch.valid() || !(lands > 0)) {
-        ways.energy.absorbed += lands;
-        break;
-      }
-      const Vec3 x = in_plane_of(patches, hit.patch, hit.position(ray));
-      ways.landings.push_back(
-          {{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)},
-           {static_cast<float>(arrives[0]), static_cast<float>(arrives[1]), static_cast<float>(arrives[2])},
-           hit.patch.value});
-      ways.energy.absorbed += luminous_mean(arrives * (Spectrum(1.0) - patches.albedo(hit.patch)));
-      const auto on = patches.scatter(hit.patch, patches.scatters_through(hit.patch) ? random.uniform() : 0);
-      flux = arrives * on.share;
-      const double survival = luminous_mean(flux) / lands;
-      if (!(random.uniform() < survival)) break;
-      flux *= 1 / std::min(survival, 1.0);
-      ray.origin = rays.off_surface(x, on.normal);
-      const double u = random.uniform(), v = random.uniform();
-      ray.direction = cosine_direction(Frame(on.normal), u, v);
     }
   }
   return ways;

@@ -9,14 +9,27 @@
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
 #include "solver/particles/emission.h"
+#include "solver/sampling/packed_direction.h"
 
 namespace clerestory {
 
-/// A particle that arrives at a patch. 28 bytes.
+/// How a particle came to where it lands.
+enum class ParticleWay : std::uint32_t {
+  straight,   ///< from the light, through panes perhaps
+  turned,     ///< from the light by mirrors, glass and gloss alone: caustics
+  scattered,  ///< diffusely at least once
+};
+
+/// A particle that arrives at a patch. 32 bytes.
 struct Landing {
   std::array<float, 3> position;  ///< [m]
   std::array<float, 3> flux;      ///< by channel, of as many particles as were followed [W]
   std::uint32_t patch;
+  std::uint32_t direction_and_way;  ///< packed_direction.h, and ParticleWay over it
+
+  /// Unit, to where it came from.
+  Vec3 direction() const { return unpack_direction(direction_and_way); }
+  ParticleWay way() const { return static_cast<ParticleWay>(direction_and_way >> kDirectionBits); }
 };
 
 /// What some particles did.
@@ -26,8 +39,9 @@ struct ParticleWays {
   unsigned long long rays = 0;
 };
 
-/// Follows particles first ... first + count - 1 of the sequence `key`: each lands, and goes on with the probability of
-/// its albedo, in luminous mean, so its luminous flux stays what it was; glass and mirrors turn it (one_way()).
+/// Follows particles first ... first + count - 1 of the sequence `key`: each lands with what glass on its way lets
+/// pass, and goes on from there with the probability of the albedo, or as what glass has turned back (Echo) with the
+/// probability of its share, so that its luminous flux stays what it was.
 ///
 /// monitor  asked now and then, for a way may have millions of bounces. Ask it, too: ways that it stopped are not
 /// whole.

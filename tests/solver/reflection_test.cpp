@@ -357,7 +357,8 @@ TEST_P(CubeOfPanes, LightInItEndsThoughTheyLetNothingPass) {
     }
     for (std::size_t i = 0; i < patches.patch_count(); ++i)
       if (is_of_tray(patches, PatchId{i})) found += patches.area[i] * s.E[i][0];
-    EXPECT_NEAR(found / expected, 1, 3e-3) << T;
+    // Of 32,768 particles one in ten lands on the tray.
+    EXPECT_NEAR(found / expected, 1, GetParam() == Method::particles ? 2e-2 : 3e-3) << T;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes, testing::Values(Method::progressive, Method::path, Method::particles));

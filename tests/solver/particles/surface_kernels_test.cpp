@@ -35,7 +35,8 @@ LandingsByPatch even_landings(const PatchSet& patches, const std::function<doubl
         const auto flux = static_cast<float>(E(x) * patches.area[i] / (cells * cells));
         ways[0].landings.push_back({{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)},
                                     {flux, flux, flux},
-                                    static_cast<std::uint32_t>(i)});
+                                    static_cast<std::uint32_t>(i),
+                                    0});
       }
   }
   LandingsByPatch landings;

@@ -34,7 +34,8 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
   if (!scene.lights.sky && scene.lights.suns.empty()) out.push_back("sky and sun: the scene has none");
   if (scene.lights.sky && s.openings == 0) out.push_back("openings: the sky looks into no room");
   if (scene.lights.luminaires.empty()) out.push_back("luminaires: the scene has none");
-  constexpr const char* kPlural[] = {"", "glass", "diffusers", "mirrors"};  // in the order of MaterialKind
+  constexpr const char* kPlural[] = {"", "glass", "diffusers", "mirrors",
+                                     "glossy surfaces"};  // in the order of MaterialKind
   static_assert(std::size(kPlural) == std::size(kMaterialKindNames));
   for (std::size_t kind = 1; kind < std::size(kPlural); ++kind)
     if (std::ranges::none_of(s.patches.materials,

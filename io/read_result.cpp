@@ -203,8 +203,8 @@ void require_layers(const std::map<std::string, WrittenArray>& of_what, const st
   const auto require = [&](const std::string& name, int components) {
     const auto at = of_what.find(name);
     if (at == of_what.end() || at->second.components != components)
-      refuse(file, text("has layers, and not on all points and cells an array '", quotable(name), "' of as many ",
-                        "components as they need, ", components));
+      refuse(file, text("has layers, and not on all points and cells an array '", quotable(name), "' of ", components,
+                        components == 1 ? " component" : " components"));
   };
   require("irradiance", channels), require("radiosity", channels);
   for (const std::string& name : names) {

@@ -13,6 +13,11 @@ namespace {
 constexpr Range kReflectance{
     .low = 0, .high = 1, .high_allowed = false, .advice = "a wall cannot reflect more than it receives"};
 constexpr Range kTransmittance{.low = 0, .high = 1, .advice = "a sheet cannot pass more than it receives"};
+constexpr Range kSpecular{
+    .low = 0, .high = 1, .high_allowed = false, .advice = "a lobe cannot reflect more than it receives"};
+constexpr Range kExponent{.low = 0, .high = 1e6, .advice = "10 is satin, 1000 nearly a mirror"};
+constexpr Range kRoughness{
+    .low = 0.01, .high = 1, .advice = "0.1 is polished, 0.5 satin; for a mirror write \"type\": \"mirror\""};
 constexpr Range kEmission{
     .low = 0, .high = kMostLight, .advice = "a surface emits no less than nothing and no more than a result can hold"};
 
@@ -64,9 +69,31 @@ Blinds read_blinds(const JsonObject& pane, const JsonColour& open, ChannelCount&
   return {closed->value, object.word("group").value_or("")};
 }
 
+/// What "type": "glossy" has besides the others; its diffuse part is there.
+void read_gloss(const JsonObject& object, Material& material, ChannelCount& channels) {
+  const auto specular = object.colour("specular", kSpecular);
+  if (!specular)
+    throw InputError(text(object.place("specular"),
+                          " is missing; it is what the lobe reflects at normal incidence, 0.04 for polished stone"));
+  channels.note(*specular, object.place("specular"));
+  if (!object.has("reflectance")) material.reflectance = Spectrum(0.0);
+  const auto exponent = object.number("exponent", kExponent), roughness = object.number("roughness", kRoughness);
+  if (exponent.has_value() == roughness.has_value())
+    throw InputError(text(object.where(),
+                          ": give one of exponent (modified Phong, 0 or more) and roughness (GGX, 0.01 ", "to 1)",
+                          exponent ? ", not both" : ""));
+  if (const double sum = (material.reflectance + specular->value).max(); !(sum < 1))
+    throw InputError(text(object.where(), ": reflectance + specular = ", material.reflectance.max(), " + ",
+                          specular->value.max(), " = ", sum,
+                          " is outside [0, 1); a surface cannot reflect more than it receives"));
+  if (material.sides == 1)
+    throw InputError(text(object.place("sides"), " = 1: a glossy surface reflects on both of its sides"));
+  material.kind = MaterialKind::glossy;
+  material.gloss = Gloss{specular->value, exponent, roughness.value_or(Gloss{}.roughness)};
+}
+
 Material read_material(const JsonObject& object, ChannelCount& channels, std::vector<std::string>& warnings) {
-  constexpr std::string_view kTypes[] = {"diffuse", "glass", "diffuser", "mirror"};
-  const std::string type = object.choice("type", kTypes).value_or("diffuse");
+  const std::string type = object.choice("type", kMaterialKindNames).value_or("diffuse");
   Material material;
   material.reflectance = Spectrum(0.5);
   if (const auto colour = object.colour("reflectance", kReflectance)) {
@@ -83,6 +110,11 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
     if (*sides != 1 && *sides != 2) throw InputError(text(object.place("sides"), " = ", *sides, " is neither 1 nor 2"));
     material.sides = static_cast<int>(*sides);
   }
+  for (const char* key : {"specular", "exponent", "roughness"})
+    if (type != "glossy" && object.has(key))
+      throw InputError(text(
+          object.place(key), " needs \"type\": \"glossy\"",
+          type == "glass" || type == "mirror" ? text("; ", type == "glass" ? "glass" : "a mirror", " is smooth") : ""));
   if (type != "glass" && object.has("blinds"))
     throw InputError(text(object.place("blinds"), ": blinds belong to a pane; write \"type\": \"glass\""));
   if (type == "glass") {
@@ -128,6 +160,7 @@ Material read_material(const JsonObject& object, ChannelCount& channels, std::ve
     if (material.sides == 1) throw InputError(text(object.place("sides"), " = 1: a mirror acts on both of its sides"));
     material.kind = MaterialKind::mirror;
   }
+  if (type == "glossy") read_gloss(object, material, channels);
   return material;
 }
 
@@ -171,10 +204,11 @@ std::vector<MaterialRule> read_material_rules(const Json& materials, const std::
   if (!materials.is_object()) refuse_type(file_name + ": materials", "an object of name patterns", materials);
   std::vector<MaterialRule> rules;
   for (const auto& [pattern, value] : materials.items()) {
-    const JsonObject object(value, text(file_name, ": materials '", quotable(pattern), "'"),
-                            {"type", "reflectance", "transmittance", "sides", "exitance", "luminous_exitance",
-                             "radiance", "luminance", "power", "luminous_flux", "group", "blinds"},
-                            ": ");
+    const JsonObject object(
+        value, text(file_name, ": materials '", quotable(pattern), "'"),
+        {"type", "reflectance", "transmittance", "sides", "exitance", "luminous_exitance", "radiance", "luminance",
+         "power", "luminous_flux", "group", "blinds", "specular", "exponent", "roughness"},
+        ": ");
     rules.push_back({pattern, read_material(object, channels, warnings), {}});
   }
   return rules;

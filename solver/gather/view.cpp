@@ -16,9 +16,9 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
   std::array<Echo, 16> echoes;
   for (std::size_t k = 0; k < directions.size(); ++k) rays[k] = {p_, directions[k]};
   const Problem& problem = light_.problem;
-  const bool has_glass = problem.rays.has_glass();
+  const bool has_echoes = problem.rays.has_echoes();
   problem.rays.first_hits(problem.patches, std::span(rays).first(directions.size()), hits,
-                          std::span(echoes).first(has_glass ? directions.size() : 0));
+                          std::span(echoes).first(has_echoes ? directions.size() : 0));
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Hit& hit = hits[k];
     values[k] = Spectrum(0.0);
@@ -38,7 +38,7 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
       values[k] = back * hit.transmittance;
       if (found) found->add(k, RowEntry::of_patch(hit.patch, share * hit.transmittance));
     }
-    if (has_glass && !echoes[k].is_none())
+    if (has_echoes && !echoes[k].is_none())
       values[k] += turned_back(echoes[k], rays[k], owner == kNobody ? density[k] : 0, k, found);
   }
 }

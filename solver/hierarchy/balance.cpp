@@ -213,7 +213,7 @@ Sweeps sweep_until(System<L>& system, double residual, const Monitor& monitor) {
 }
 
 Losses on_its_way(const Transport& transport, std::size_t i) {
-  return losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]));
+  return losses(Spectrum(transport.arrives[i]), Spectrum(transport.escapes[i]), transport.has_gloss);
 }
 
 /// B, and where the light ends.

@@ -96,7 +96,7 @@ class PatchLinks {
   /// What panes turn back to the leaves: by rays, as kernels do not find it.
   void link_echoes() {
     const Problem& problem = scene_.problem;
-    if (!problem.rays.has_glass()) return;
+    if (!problem.rays.has_echoes()) return;
     for (std::uint32_t v = root_; v < scene_.tree.end[root_]; ++v) {
       if (!scene_.tree.is_leaf(v)) continue;
       const PatchId leaf = scene_.leaf(v);
@@ -193,6 +193,7 @@ BfLinks bf_refine(const Problem& problem, const ElementTree& tree, const Field& 
   }
   transport.space = std::move(closure.space), transport.spaces = closure.spaces;
   transport.rays = closure.rays;
+  transport.has_gloss = closure.has_gloss;
 
   transport.blocks.resize((patches.size() + kPatchesInBlock - 1) / kPatchesInBlock);
   std::vector<std::vector<std::uint32_t>> to_halve(transport.blocks.size());

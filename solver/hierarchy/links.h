@@ -60,7 +60,8 @@ struct Transport {
   std::vector<float> escapes;        ///< N, share that leaves the scene; the rest goes into glass and dark sides [1]
   std::vector<std::uint32_t> space;  ///< N, leaves that exchange light, directly or over others, have one number
   std::size_t spaces = 0;
-  int bundle_rays = 0;  ///< from each receiver; 0: links were made otherwise
+  bool has_gloss = false;  ///< as of Closure
+  int bundle_rays = 0;     ///< from each receiver; 0: links were made otherwise
   unsigned long long rays = 0;
   bool complete = true;  ///< false: stopped early
 

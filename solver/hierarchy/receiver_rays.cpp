@@ -23,7 +23,7 @@ void send_bundle(const ReceiverArea& area, const Problem& problem, const BundleN
     bundle.rays[k] = {problem.rays.off_surface(point_on_triangle(from.corners, u[2], u[3]), from.normal),
                       cosine_direction(alone ? frame : Frame(from.normal), u[0], u[1])};
   }
-  if (problem.rays.has_glass()) bundle.echoes.resize(bundle.rays.size());
+  if (problem.rays.has_echoes()) bundle.echoes.resize(bundle.rays.size());
   problem.rays.first_hits(problem.patches, bundle.rays, bundle.hits, bundle.echoes);
 }
 

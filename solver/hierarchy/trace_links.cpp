@@ -151,6 +151,7 @@ Transport trace_links(const Illumination& light, const ElementTree& tree, const 
   Transport transport;
   transport.arrives.resize(n), transport.escapes.resize(n);
   transport.bundle_rays = options.bundle_rays;
+  transport.has_gloss = light.problem.rays.has_gloss();
   const bool merges = B.size() == n;
   const SlitLines slits(light, options.seed);
   const Given given{{light, tree, direct, slits, options.sky_views, merges && options.uniform > 0},

@@ -294,6 +294,27 @@ Spectrum from_suns(const Lights& lights, const PatchSampler& patch, double far_a
   return E;
 }
 
+/// By one pair from each of some points.
+GlossIrradiance from_gloss(const Problem& problem, const GlossLight& gloss, std::size_t patch,
+                           const DirectOptions& options, LightRow* row) {
+  const std::uint64_t key = stream_key(options.seed, kGlossOfPatch, patch);
+  const auto corners = problem.patches.corner_positions(PatchId{patch});
+  const Vec3 normal = problem.patches.normal[patch];
+  const std::size_t begin = row ? row->size() : 0;
+  GlossIrradiance sum;
+  for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(options.gloss_rays); ++k) {
+    const auto at = sobol4(k, key);
+    RandomStream random(key, k);
+    const GlossIrradiance found =
+        gloss.by_one_pair(problem.rays.off_surface(point_on_triangle(corners, at[0], at[1]), normal), normal,
+                          {sobol4(k, key + 1), sobol4(k, key + 2), sobol4(k, key + 3)}, random, row);
+    sum.luminaires += found.luminaires, sum.suns += found.suns;
+  }
+  if (row)
+    for (RowEntry& e : std::span(*row).subspan(begin)) e.scale(Spectrum(1.0 / options.gloss_rays));
+  return {sum.luminaires / options.gloss_rays, sum.suns / options.gloss_rays};
+}
+
 }  // namespace
 
 std::vector<Beam> beams_of(const Lights& lights) {
@@ -302,22 +323,24 @@ std::vector<Beam> beams_of(const Lights& lights) {
   return beams;
 }
 
-DeltaIrradiance delta_light_of_patch(const Problem& problem, std::span<const Beam> beams, std::size_t patch,
-                                     const DirectOptions& options, LightRow* row) {
+DeltaIrradiance delta_light_of_patch(const Problem& problem, const GlossLight& gloss, std::span<const Beam> beams,
+                                     std::size_t patch, const DirectOptions& options, LightRow* row) {
   const PatchSampler sampler(problem, patch, options, row);
   DeltaIrradiance light;
   light.luminaires = from_luminaires(problem.lights, beams, sampler);
   light.suns = from_suns(problem.lights, sampler, 4 * problem.rays.diameter());
+  if (!gloss.empty()) light.by_gloss = from_gloss(problem, gloss, patch, options, row);
   return light;
 }
 
 Field delta_light_on(const Problem& problem, std::span<const std::uint32_t> patches, const DirectOptions& options) {
   const std::vector<Beam> beams = beams_of(problem.lights);
+  const GlossLight gloss(problem);
   Field E(patches.size(), problem.patches.channels);
   parallel_for(patches.size(), 16, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
-      const DeltaIrradiance light = delta_light_of_patch(problem, beams, patches[k], options, nullptr);
-      E.set(k, light.luminaires + light.suns);
+      const DeltaIrradiance light = delta_light_of_patch(problem, gloss, beams, patches[k], options, nullptr);
+      E.set(k, light.sum());
     }
   });
   return E;

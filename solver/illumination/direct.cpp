@@ -129,7 +129,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   if (lights.empty()) return direct;
 
   const std::vector<Beam> beams = beams_of(lights);
-  std::vector<double> daylight(n);  // [W] of each patch
+  std::vector<double> daylight(n), sent_on(n);  // [W] of each patch; by gloss, which is said to have absorbed it
   const bool has_openings = !lights.sky_openings().empty();
   std::vector<std::vector<std::uint32_t>> looked_at(has_openings ? n : 0);
   if (has_openings) direct.E_openings = Field(n, problem.patches.channels);
@@ -137,7 +137,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   const auto light_patch = [&](std::size_t i, const DirectOptions& spend) {
     LightRow* row = rows ? &row_of_patch[i] : nullptr;
     if (row) row->clear();
-    const DeltaIrradiance delta = delta_light_of_patch(problem, beams, i, spend, row);
+    const DeltaIrradiance delta = delta_light_of_patch(problem, light.sampler.gloss(), beams, i, spend, row);
     Spectrum sky = delta.suns;
     if (has_openings) {
       const std::uint32_t same = round && round->before && !row ? round->number[i] : PatchesOfRound::kNew;
@@ -156,7 +156,8 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     }
     if (!light.sky.dark() && spend.sky_rays > 0)
       sky += from_sky(light, i, spend, has_openings ? looked_at[i] : std::vector<std::uint32_t>{}, row);
-    direct.E.set(i, delta.luminaires + sky);
+    direct.E.set(i, delta.luminaires + delta.by_gloss.sum() + sky);
+    sent_on[i] = luminous_mean(delta.by_gloss.suns) * problem.patches.area[i];
     daylight[i] = luminous_mean(sky) * problem.patches.area[i];
   };
   if (options.rough_first && monitor.has_deadline()) {
@@ -175,6 +176,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     });
   }
   for (const double flux : daylight) direct.energy.emitted += flux;
+  for (const double flux : sent_on) direct.energy.absorbed -= flux;
   if (has_openings) {
     direct.openings.begin.push_back(0);
     for (const auto& numbers : looked_at) {

@@ -60,7 +60,8 @@ double area_median(const PatchSet& patches, const Field& glow, const std::vector
   return std::bit_cast<float>(found);
 }
 
-LightSampler::LightSampler(const Problem& problem, const Field& glow) : problem_(problem), glow_(glow) {
+LightSampler::LightSampler(const Problem& problem, const Field& glow)
+    : problem_(problem), glow_(glow), gloss_(problem) {
   const PatchSet& patches = problem.patches;
   const Lights& lights = problem.lights;
   const double extent = problem.rays.diameter();
@@ -228,7 +229,7 @@ Spectrum LightSampler::delta_light(const Vec3& p, const Vec3& n, const DeltaEffo
     }
     shadows.trace();
   }
-  return E;
+  return E + gloss_.irradiance(p, n, effort.gloss_rays, key, row).sum();
 }
 
 }  // namespace clerestory

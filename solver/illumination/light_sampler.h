@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "solver/illumination/gloss_light.h"
 #include "solver/illumination/light_rows.h"
 #include "solver/illumination/problem.h"
 #include "solver/lights/light_tree.h"
@@ -32,6 +33,7 @@ struct LightSample {
 struct DeltaEffort {
   int sun_rays = 1;        ///< to each sun
   int opening_rays = 256;  ///< to each luminaire, at most; 1, 4, 16, 64 or 256
+  int gloss_rays = 16;     ///< pairs, for what glossy surfaces send on
 };
 
 class LightSampler {
@@ -63,7 +65,10 @@ class LightSampler {
     return can_choose(hit) ? density(hit, receiver(p, n), d, bright_patches_only) : 0;
   }
 
-  /// Irradiance at p of luminaires and of the sun: a shadow ray to each luminaire, more to openings that are near.
+  const GlossLight& gloss() const { return gloss_; }
+
+  /// Irradiance at p of luminaires and of the sun, straight and over lobes of glossy surfaces: a shadow ray to each
+  /// luminaire, more to openings that are near.
   /// row: null, or where to add what comes of each.
   Spectrum delta_light(const Vec3& p, const Vec3& n, const DeltaEffort& effort, std::uint64_t key,
                        LightRow* row = nullptr) const;
@@ -80,6 +85,7 @@ class LightSampler {
 
   const Problem& problem_;
   const Field& glow_;
+  GlossLight gloss_;
   LightTree patches_, luminaires_;              ///< of bright_; of all luminaires, by number
   std::vector<std::uint32_t> bright_;           ///< patches sampled like lights
   std::vector<std::uint32_t> number_of_patch_;  ///< N, number in bright_ or kNone; empty without any

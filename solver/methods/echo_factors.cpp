@@ -43,7 +43,7 @@ bool look(const PatchSet& patches, const RayScene& rays, std::size_t i, std::uin
 
 void add_echoes(FormFactorMatrix& F, const PatchSet& patches, const RayScene& rays, std::uint64_t seed,
                 const Monitor& monitor) {
-  if (!rays.has_glass()) return;
+  if (!rays.has_echoes()) return;
   std::vector<char> sees_glass(F.n);
   parallel_for(F.n, 8, [&](std::size_t from, std::size_t to) {
     std::vector<Arrival> ignored;

@@ -211,7 +211,7 @@ Solution shoot(const Problem& problem, const DirectLight& direct, const Closure&
         while (last < pieces.size() && begin[last + 1] - begin[first] <= kBlock) ++last;
         const std::size_t offset = begin[first];
         landings.resize(begin[last] - offset);
-        if (problem.rays.has_glass() || problem.rays.has_mirrors()) passed.resize(landings.size());
+        if (problem.rays.has_echoes() || problem.rays.has_mirrors()) passed.resize(landings.size());
         const auto part = [&](auto& all, std::size_t k) {
           return all.empty() ? std::span(all) : std::span(all).subspan(begin[k] - offset, pieces[k].count);
         };

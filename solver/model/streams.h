@@ -22,6 +22,7 @@ enum Stream : std::uint64_t {
   kFluxOfLuminaire = 0x13,
   kOpeningRaysOfPatch = 0x14,
   kPointsOfLuminaire = 0x15,
+  kGlossOfPatch = 0x18,
   // Ways of luminaires and suns over mirrors and panes; the stream takes the seed's place.
   kWaysOfLuminaire = 0x16,
   kWaysOfSun = 0x17,
@@ -80,6 +81,8 @@ enum Stream : std::uint64_t {
   // Panes that turn a ray back, by ray; and whether one of these is followed further.
   kPanesOfRay = 0x88,
   kEchoes = 0x89,
+  kGlossOfRay = 0x8d,
+  kGlossPairs = 0x8e,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.
   kVisibilityPattern = 0x7061747465726e,
 };

@@ -75,6 +75,16 @@ Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, cons
   return s.irradiance * weight * scene.transmittance_by_mirrors(p, s.end, s.way);
 }
 
+/// What glossy surfaces send on of luminaires and suns, by a pair of rays.
+Spectrum by_gloss(const Illumination& light, const Vec3& p, const Vec3& n, RandomStream& random,
+                  unsigned long long& rays) {
+  GlossLight::Numbers u;
+  for (auto& four : u)
+    for (double& x : four) x = random.uniform();
+  rays += GlossLight::kRaysOfPair;
+  return light.sampler.gloss().by_one_pair(p, n, u, random).sum();
+}
+
 /// The sky by one ray through an opening. Of light that bundle rays meet too, the share that is due to these.
 Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
                          unsigned long long& rays) {
@@ -108,6 +118,7 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   for (unsigned bounce = 1;; ++bounce) {
     if (bounce % kBouncesBetween == 0 && monitor.should_stop()) return E;
     if (!light.sampler.empty()) E += throughput * one_light(light, p, n, choice, rays);
+    if (!light.sampler.gloss().empty()) E += throughput * by_gloss(light, p, n, random, rays);
     if (!light.openings.empty()) E += throughput * through_opening(light, p, n, opening, rays);
     const double survival = std::min(1.0, throughput.max() / (kSafe * through_slits));
     if (!(random.uniform() < survival)) return E;

@@ -21,6 +21,7 @@ Closure measure_closure(const Problem& problem, int rays_per_patch, std::uint64_
   const std::size_t n = patches.patch_count();
   Closure closure;
   closure.arrives = closure.escapes = Field(n, patches.channels);
+  closure.has_gloss = rays.has_gloss();
   closure.rays = n * static_cast<std::size_t>(rays_per_patch);
   // The first few neighbours of each patch are enough to tell spaces apart.
   constexpr int kNeighbours = 16;

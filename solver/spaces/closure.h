@@ -17,7 +17,8 @@ struct Closure {
   std::vector<std::uint32_t> space;  ///< N, number of the space that patch i is in, 0 .. spaces - 1
   std::size_t spaces = 0;
   unsigned long long rays = 0;
-  bool complete = true;  ///< false when the monitor stopped the work: nothing of it is to be used
+  bool has_gloss = false;  ///< shares that arrive may sum to more than 1
+  bool complete = true;    ///< false when the monitor stopped the work: nothing of it is to be used
 };
 
 /// By rays_per_patch (at least 8) stratified cosine rays; exactly 1 and 0 in a closed room without glass. What sees

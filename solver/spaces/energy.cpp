@@ -6,8 +6,9 @@
 
 namespace clerestory {
 
-Losses losses(const Spectrum& arrives, const Spectrum& escapes) {
+Losses losses(const Spectrum& arrives, const Spectrum& escapes, bool has_gloss) {
   const Spectrum lost = Spectrum(1.0) - arrives - escapes;
+  if (has_gloss) return {escapes, lost};
   return {escapes, {std::max(0.0, lost[0]), std::max(0.0, lost[1]), std::max(0.0, lost[2])}};
 }
 

@@ -16,9 +16,12 @@ struct Losses {
 };
 
 /// What neither arrives nor escapes is lost. Shares that rays counted may sum to a little more than 1; nothing is lost
-/// then.
-Losses losses(const Spectrum& arrives, const Spectrum& escapes);
-inline Losses losses(const Closure& closure, std::size_t i) { return losses(closure.arrives[i], closure.escapes[i]); }
+/// then. Where there is gloss they do: light that its lobes send on arrives again, and what is lost is less than
+/// nothing, as the glossy patch is said to have absorbed it.
+Losses losses(const Spectrum& arrives, const Spectrum& escapes, bool has_gloss);
+inline Losses losses(const Closure& closure, std::size_t i) {
+  return losses(closure.arrives[i], closure.escapes[i], closure.has_gloss);
+}
 
 /// Where the light ends that arrives at patch i as E and leaves it as B [W/m2], luminous mean:
 ///   absorbed = A ((1 - albedo) E + lost B),     escaped = A escapes B.

@@ -1,5 +1,5 @@
 #pragma once
-// Which of the panes on its way turns a ray back.
+// Which of the panes on its way turns a ray back, or the gloss that it ends on sends it on.
 
 #include <optional>
 
@@ -10,21 +10,20 @@
 
 namespace clerestory {
 
-/// Chooses one of the panes that a ray passes, each in proportion to what it turns back.
+/// Chooses one of the ways that a ray may take besides its own, each in proportion to what it brings.
 class EchoChoice {
  public:
   EchoChoice(const Ray& ray, Echo* echo) : ray_(ray), echo_(echo) {}
   explicit operator bool() const { return echo_ != nullptr; }
 
-  /// The next pane turns this share back; from there the echo goes along `ray`.
-  void offer(std::uint32_t plane, const Spectrum& share, const Ray& ray) {
-    const double weight = luminous_mean(share);
+  void offer(const Echo& next) {
+    const double weight = luminous_mean(next.share);
     if (!(weight > 0)) return;
     all_ += weight;
     if (weight < all_ && !(random_number() * all_ < weight)) return;
-    chosen_ = weight, *echo_ = {plane, share, ray};
+    chosen_ = weight, *echo_ = next;
   }
-  /// After the last pane.
+  /// After the last.
   void finish() {
     if (echo_ && chosen_ > 0) echo_->share *= all_ / chosen_;
   }

@@ -16,7 +16,8 @@ inline RandomStream echo_numbers(std::uint64_t key, std::uint64_t k) { return {k
 
 /// Calls found(hit) for where an echo ends, and for where echoes of it end: hit.transmittance is the share of the first
 /// ray's light that comes from there. Only the first always has a hit; another follows by roulette, with the share that
-/// glass on the way turned back for its chance, so that nothing is lost on the mean.
+/// glass on the way turned back for its chance, so that nothing is lost on the mean. What gloss sends on is followed
+/// while it is more than kMuch of the first ray's light: most of a polished room's is.
 template <class Found>
 void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& first, RandomStream& random,
                  const Found& found) {
@@ -27,7 +28,8 @@ void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& firs
     hit.plane = hit.reflected ? kNoPlane : echo.plane;
     if (!hit.reflected) hit.reflected = true, hit.leg = echo.ray;
     found(hit);
-    const double chance = luminous_mean(next.share);
+    constexpr double kMuch = 0.1;
+    const double chance = next.by_gloss ? luminous_mean(echo.share * next.share) / kMuch : luminous_mean(next.share);
     if (!(random.uniform() < chance)) return;
     next.share *= echo.share * (1 / std::min(chance, 1.0));
     next.plane = kNoPlane;

@@ -77,6 +77,7 @@ struct RayScene::Impl {
   std::vector<GlassTable> glass_kinds;
   std::vector<std::uint32_t> kind_of_glass;  ///< by triangle; empty without glass
   TurningPlanes turning;
+  GlossySides glossy;
   double diameter = 0;
   std::vector<Vec3> vertices;  ///< in double, for what float cannot tell
   std::vector<std::array<VertexId, 3>> corners;
@@ -149,6 +150,25 @@ struct RayScene::Impl {
     }
   }
 
+  const Lobe* lobe(TriangleId t, const Vec3& direction) const {
+    if (glossy.empty() || !t.valid()) return nullptr;
+    return glossy.lobe(t, dot(unit_normal(t), direction) < 0 ? kFront : kBack);
+  }
+
+  /// Where a ray ends on a glossy side, it goes on by the lobe. share: of the lift.
+  void offer_gloss(const Ray& first, const Hit& hit, double share, EchoChoice& choice) const {
+    const Vec3& direction = hit.direction(first);
+    const Lobe* at = lobe(hit.triangle, direction);
+    if (!at) return;
+    const Vec3 front = unit_normal(hit.triangle), n = dot(front, direction) < 0 ? front : -front;
+    RandomStream random(key_of({hit.position(first), direction}, kGlossOfRay));
+    const double u = random.uniform(), v = random.uniform();
+    const Lobe::Sample s = at->sample(n, -direction, u, v);
+    if (!(s.density > 0)) return;
+    const Vec3 met = hit.position(first), x = met - n * dot(n, met - corner(hit.triangle, 0));
+    choice.offer({kNoPlane, hit.transmittance * s.weight, {off_surface(x, n, share), s.direction}, true});
+  }
+
   void tabulate_glass(const PatchSet& patches) {
     if (!glass.of_primitive.empty()) kind_of_glass.assign(patches.triangle_count(), 0);
     std::vector<std::uint32_t> kind_of_material(patches.materials.size(), 0xffffffff);
@@ -204,9 +224,10 @@ struct RayScene::Impl {
     walk_glass(origin, direction, far, finely, [&](double distance, TriangleId pane) {
       const double cosine = dot(unit_normal(pane), direction);
       if (panes.choice)
-        panes.choice->offer(panes.is_first ? turning.glass_plane[pane] : kNoPlane,
-                            panes.so_far * share * glass_of(pane).reflectance(cosine),
-                            turned(origin, direction, distance, unit_normal(pane), corner(pane, 0), panes.lift_share));
+        panes.choice->offer(
+            {panes.is_first ? turning.glass_plane[pane] : kNoPlane,
+             panes.so_far * share * glass_of(pane).reflectance(cosine),
+             turned(origin, direction, distance, unit_normal(pane), corner(pane, 0), panes.lift_share)});
       share *= glass_of(pane).transmittance(cosine);
     });
     return share;
@@ -284,6 +305,7 @@ RayScene::RayScene(const PatchSet& patches) {
   });
   impl->tabulate_glass(patches);
   impl->turning = find_turning_planes(patches, impl->diameter);
+  impl->glossy = GlossySides(patches, impl->diameter);
   impl->tight = TightPlaces(patches, kLift * impl->diameter);
   if (impl->tight.any()) impl->fine.emplace(patches, impl->vertices, impl->corners, impl->diameter);
   impl_ = std::move(impl);
@@ -300,6 +322,10 @@ std::uint32_t RayScene::plane_of(TriangleId t) const {
   if (const TurningPlanes::Mirror* mirror = has_mirrors() ? impl_->turning.mirror_at(t) : nullptr) return mirror->plane;
   return has_glass() ? impl_->turning.glass_plane[t] : kNoPlane;
 }
+bool RayScene::has_gloss() const { return !impl_->glossy.empty(); }
+const GlossySides& RayScene::gloss() const { return impl_->glossy; }
+Vec3 RayScene::normal(TriangleId t) const { return impl_->unit_normal(t); }
+const Lobe* RayScene::lobe(TriangleId t, const Vec3& direction) const { return impl_->lobe(t, direction); }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }
 Vec3 RayScene::off_surface(const Vec3& p, const Vec3& n) const { return impl_->off_surface(p, n, lift_share_); }
@@ -367,6 +393,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       if (starts_tight || (!hit.escaped() && impl_->lands_tight(hit, sent))) {
         hit = impl_->fine_leg(patches, sent, panes);
         if (has_mirrors()) impl_->follow_mirrors(patches, sent, lift_share_, hit, panes.choice);
+        if (choice) impl_->offer_gloss(sent, hit, lift_share_, choice);
         choice.finish();
         continue;
       }
@@ -379,6 +406,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       if ((by_glass >> k) & 1)
         hit.transmittance = impl_->through_glass(sent.origin, sent.direction, hit.distance, false, panes);
       if (has_mirrors()) impl_->follow_mirrors(patches, sent, lift_share_, hit, panes.choice);
+      if (choice) impl_->offer_gloss(sent, hit, lift_share_, choice);
       choice.finish();
     }
   }
@@ -386,10 +414,11 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
 
 Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray, Echo* echo) const {
   if (echo) *echo = {};
-  EchoChoice choice(ray, has_glass() ? echo : nullptr);
+  EchoChoice choice(ray, has_echoes() ? echo : nullptr);
   const PanesOnLeg panes{choice ? &choice : nullptr, Spectrum(1.0), lift_share_};
   Hit hit = impl_->one_leg(patches, ray, panes);
   if (has_mirrors()) impl_->follow_mirrors(patches, ray, lift_share_, hit, panes.choice);
+  if (choice) impl_->offer_gloss(ray, hit, lift_share_, choice);
   choice.finish();
   return hit;
 }

@@ -10,6 +10,7 @@
 
 #include "solver/model/patch_set.h"
 #include "solver/model/random_stream.h"
+#include "solver/visibility/glossy_sides.h"
 #include "solver/visibility/mirror_planes.h"
 
 namespace clerestory {
@@ -44,12 +45,13 @@ struct Hit {
   Vec3 position(const Ray& ray) const { return (reflected ? leg.origin : ray.origin) + direction(ray) * distance; }
 };
 
-/// What panes of glass turn back of a ray that goes on through them, by one of these panes, chosen at random where
-/// there are several.
+/// What panes of glass turn back of a ray that goes on through them, and what a glossy surface that it ends on sends
+/// along it beside its radiosity: one of these ways, chosen at random where there are several.
 struct Echo {
-  std::uint32_t plane = kNoPlane;  ///< of the pane; kNoPlane where a mirror comes before it, too
+  std::uint32_t plane = kNoPlane;  ///< of the pane; kNoPlane where a mirror comes before it, too, and of gloss
   Spectrum share{0.0};  ///< of the light that comes along it in what the ray brings; over the chance of the choice
-  Ray ray;              ///< from the pane
+  Ray ray;              ///< from the pane or the surface
+  bool by_gloss = false;
 
   bool is_none() const { return share.is_black(); }
 };
@@ -76,9 +78,9 @@ struct SegmentPacket {
 };
 
 /// Read-only, thread safe. Opaque triangles block; glass lets its share pass, by the
-/// angle (glass_sheet.h), and turns another back, which goes on as an Echo (echoes.h); mirrors turn first_hit() into
-/// another direction, up to 64 times. Knows triangles only, so it stays valid when make_patches() changes which sides
-/// take part.
+/// angle (glass_sheet.h), and turns another back, which goes on as an Echo (echoes.h), as does what glossy surfaces
+/// reflect beside their radiosity; mirrors turn first_hit() into another direction, up to 64 times. Knows triangles
+/// only, so it stays valid when make_patches() changes which sides take part.
 class RayScene {
  public:
   /// Deterministic for any thread count: the tree is built by one thread.
@@ -88,7 +90,7 @@ class RayScene {
   ~RayScene();
 
   /// First surface met, `patches` telling which side takes part as which patch.
-  /// echo: null, or set to what glass on the way turns back.
+  /// echo: null, or set to what glass on the way turns back, or gloss at its end sends on.
   Hit first_hit(const PatchSet& patches, const Ray& ray, Echo* echo = nullptr) const;
   /// The same for rays that go nearly the same way, in packets of 16; scattered ones are faster one by one.
   /// echoes: empty, or one a ray.
@@ -120,6 +122,13 @@ class RayScene {
 
   bool has_glass() const;
   bool has_mirrors() const;
+  bool has_gloss() const;
+  bool has_echoes() const { return has_glass() || has_gloss(); }
+  const GlossySides& gloss() const;
+  /// Unit, of its front.
+  Vec3 normal(TriangleId t) const;
+  /// Of the side that a ray along `direction` (unit) met in t; null: that is not glossy.
+  const Lobe* lobe(TriangleId t, const Vec3& direction) const;
   /// The planes of mirrors, no more than 64 of them, then those of glass, the 64 of largest area: rays are reflected by
   /// all, lights have images in these.
   const std::vector<MirrorPlane>& mirrors() const;

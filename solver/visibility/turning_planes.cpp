@@ -50,41 +50,46 @@ void find_mirrors(const PatchSet& patches, double diameter, TurningPlanes& found
 }
 
 void find_glass_planes(const PatchSet& patches, double diameter, TurningPlanes& found) {
-  struct Panes {
-    double area = 0;
-    std::vector<TriangleId> triangles;
-  };
-  // Planes that rounding tells apart are two: their panes are, too.
-  std::map<std::array<long, 4>, Panes> by_plane;
-  for (std::size_t i = 0; i < patches.triangle_count(); ++i) {
-    const TriangleId t{i};
-    if (!patches.front_material(t).lets_rays_pass()) continue;
-    if (found.glass_plane.empty()) found.glass_plane.assign(patches.triangle_count(), kNoPlane);
-    const Corners triangle = corners_of(patches, t);
-    Vec3 n = triangle.unit_normal();
-    if (!(length(n) > 0.5)) continue;
-    if (n.x < -1e-5 || (n.x < 1e-5 && (n.y < -1e-5 || (n.y < 1e-5 && n.z < 0)))) n = -n;
-    Panes& panes = by_plane[{std::lround(n.x * 1e5), std::lround(n.y * 1e5), std::lround(n.z * 1e5),
-                             std::lround(dot(n, triangle.x[0]) / (2e-6 * diameter))}];
-    panes.area += triangle.area();
-    panes.triangles.push_back(t);
-  }
-  std::vector<const Panes*> by_area;
-  for (const auto& [key, panes] : by_plane) by_area.push_back(&panes);
-  std::ranges::stable_sort(by_area, std::greater<>(), [](const Panes* p) { return p->area; });
-  for (const Panes* panes : std::span(by_area).first(std::min(kMostPlanes, by_area.size()))) {
-    const Corners first = corners_of(patches, panes->triangles[0]);
-    const Vec3 n = first.unit_normal();
-    const auto number = static_cast<std::uint32_t>(found.planes.size());
-    found.planes.push_back(mirror_plane(n, dot(n, first.x[0]), true));
-    for (const TriangleId t : panes->triangles) {
-      found.glass_plane[t] = number;
-      add_to(found.planes[number], corners_of(patches, t));
-    }
+  const auto is_glass = [&](TriangleId t) { return patches.front_material(t).lets_rays_pass(); };
+  for (std::size_t i = 0; i < patches.triangle_count() && found.glass_plane.empty(); ++i)
+    if (is_glass(TriangleId{i})) found.glass_plane.assign(patches.triangle_count(), kNoPlane);
+  if (found.glass_plane.empty()) return;
+  for (TrianglesInPlane& panes : largest_planes(patches, diameter, is_glass)) {
+    panes.plane.is_glass = true;
+    for (const TriangleId t : panes.triangles) found.glass_plane[t] = static_cast<std::uint32_t>(found.planes.size());
+    found.planes.push_back(panes.plane);
   }
 }
 
 }  // namespace
+
+std::vector<TrianglesInPlane> largest_planes(const PatchSet& patches, double diameter,
+                                             const std::function<bool(TriangleId)>& belongs) {
+  // Planes that rounding tells apart are two: their triangles are, too.
+  std::map<std::array<long, 4>, TrianglesInPlane> by_plane;
+  for (std::size_t i = 0; i < patches.triangle_count(); ++i) {
+    const TriangleId t{i};
+    if (!belongs(t)) continue;
+    const Corners triangle = corners_of(patches, t);
+    Vec3 n = triangle.unit_normal();
+    if (!(length(n) > 0.5)) continue;  // without area
+    if (n.x < -1e-5 || (n.x < 1e-5 && (n.y < -1e-5 || (n.y < 1e-5 && n.z < 0)))) n = -n;
+    TrianglesInPlane& same = by_plane[{std::lround(n.x * 1e5), std::lround(n.y * 1e5), std::lround(n.z * 1e5),
+                                       std::lround(dot(n, triangle.x[0]) / (2e-6 * diameter))}];
+    same.area += triangle.area();
+    same.triangles.push_back(t);
+  }
+  std::vector<TrianglesInPlane> all;
+  for (auto& [key, same] : by_plane) all.push_back(std::move(same));
+  std::ranges::stable_sort(all, std::greater<>(), &TrianglesInPlane::area);
+  all.resize(std::min(kMostPlanes, all.size()));
+  for (TrianglesInPlane& same : all) {
+    const Corners first = corners_of(patches, same.triangles[0]);
+    same.plane = mirror_plane(first.unit_normal(), dot(first.unit_normal(), first.x[0]), false);
+    for (const TriangleId t : same.triangles) add_to(same.plane, corners_of(patches, t));
+  }
+  return all;
+}
 
 TurningPlanes find_turning_planes(const PatchSet& patches, double diameter) {
   TurningPlanes found;

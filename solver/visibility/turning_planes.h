@@ -2,6 +2,7 @@
 // Mirrors and panes of a model, and the planes that they lie in.
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "solver/model/patch_set.h"
@@ -27,6 +28,16 @@ struct TurningPlanes {
     return t.valid() && mirror_of_triangle[t] != kNoMirror ? &mirrors[mirror_of_triangle[t]] : nullptr;
   }
 };
+
+/// Triangles in one plane, and a rectangle around them.
+struct TrianglesInPlane {
+  MirrorPlane plane;
+  double area = 0;
+  std::vector<TriangleId> triangles;
+};
+/// The 64 planes of largest area of the triangles that `belongs` is true of, the largest first.
+std::vector<TrianglesInPlane> largest_planes(const PatchSet& patches, double diameter,
+                                             const std::function<bool(TriangleId)>& belongs);
 
 /// Planes of mirrors as they come; of glass those of largest area.
 /// diameter  of the model [m]: a millionth of it tells planes apart.

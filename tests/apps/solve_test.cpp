@@ -235,7 +235,7 @@ TEST(Solve, TheDebugOutputIsRefusedWhereItCannotBe) {
   std::ofstream(folder / "file") << "no folder";
   const ProgramRun blocked = solve(scene, out, {"--debug-output", folder / "file/debug"});
   EXPECT_EQ(blocked.exit_code, 3);
-  EXPECT_NE(blocked.err.find("choose another place"), std::string::npos) << blocked.err;
+  EXPECT_NE(blocked.err.find("name another place"), std::string::npos) << blocked.err;
   const ProgramRun twice = solve(scene, folder / "links.vtp", {"--debug-output", folder / "."});
   EXPECT_EQ(twice.exit_code, 3);
   EXPECT_NE(twice.err.find("--debug-output"), std::string::npos) << twice.err;

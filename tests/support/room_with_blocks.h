@@ -60,6 +60,15 @@ class PatchBuilder {
     material_ = MaterialId{set_.materials.size() - 1};
     return *this;
   }
+  /// A glossy surface for what is added from now on.
+  PatchBuilder& glossy(double reflectance, const Gloss& gloss, double exitance = 0) {
+    Material m;
+    m.kind = MaterialKind::glossy, m.reflectance = Spectrum(reflectance), m.exitance = Spectrum(exitance);
+    m.gloss = gloss;
+    set_.materials.push_back(m);
+    material_ = MaterialId{set_.materials.size() - 1};
+    return *this;
+  }
   /// A new named surface for what is added from now on.
   PatchBuilder& surface(const std::string& name) {
     set_.surfaces.push_back(name);

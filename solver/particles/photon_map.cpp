@@ -1,0 +1,126 @@
+#include "solver/particles/photon_map.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "solver/model/parallel.h"
+#include "solver/model/streams.h"
+
+namespace clerestory {
+namespace {
+
+/// Of those in a bucket patches of the same surface count, and of a curved one its neighbours: cosine.
+constexpr double kAlike = 0.9;
+
+struct Place {
+  std::array<float, 3> at;
+  std::uint32_t landing;
+};
+
+struct Range {
+  std::size_t node, begin, end;
+};
+
+}  // namespace
+
+PhotonMap::PhotonMap(std::span<const Landing> landings) {
+  std::vector<Place> places(landings.size());
+  for (std::uint32_t k = 0; k < places.size(); ++k) places[k] = {landings[k].position, k};
+  std::size_t nodes = 0;
+  for (std::size_t largest = places.size(), level = 1; largest >= kBucket; largest = largest - largest / 2, level *= 2)
+    nodes += level;
+  nodes_.resize(nodes);
+  const auto halve = [&](const Range& r) {
+    std::array<float, 3> low = places[r.begin].at, high = low;
+    for (std::size_t k = r.begin + 1; k < r.end; ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], places[k].at[axis]);
+        high[axis] = std::max(high[axis], places[k].at[axis]);
+      }
+    std::uint32_t axis = 0;
+    for (std::uint32_t other = 1; other < 3; ++other)
+      if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
+    const std::size_t middle = r.begin + (r.end - r.begin) / 2;
+    const auto from = places.begin();
+    std::nth_element(from + static_cast<std::ptrdiff_t>(r.begin), from + static_cast<std::ptrdiff_t>(middle),
+                     from + static_cast<std::ptrdiff_t>(r.end),
+                     [axis](const Place& a, const Place& b) { return a.at[axis] < b.at[axis]; });
+    nodes_[r.node] = {places[middle].at[axis], axis};
+    return std::array{Range{2 * r.node + 1, r.begin, middle}, Range{2 * r.node + 2, middle, r.end}};
+  };
+  // Level by level while there are few, then each part on a thread of its own.
+  constexpr std::size_t kParts = 32;
+  std::vector<Range> parts{{0, 0, places.size()}};
+  while (parts.size() < kParts && parts.front().end - parts.front().begin >= 2 * kBucket) {
+    std::vector<Range> halves(2 * parts.size());
+    parallel_for(parts.size(), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) {
+        const auto two = halve(parts[k]);
+        halves[2 * k] = two[0], halves[2 * k + 1] = two[1];
+      }
+    });
+    parts = std::move(halves);
+  }
+  position_.resize(places.size()), carried_.resize(places.size());
+  parallel_for(parts.size(), 1, [&](std::size_t from, std::size_t to) {
+    std::vector<Range> open;
+    for (std::size_t k = from; k < to; ++k) {
+      open.assign(1, parts[k]);
+      while (!open.empty()) {
+        const Range r = open.back();
+        open.pop_back();
+        if (r.end - r.begin < kBucket) {
+          for (std::size_t i = r.begin; i < r.end; ++i) {
+            const Landing& l = landings[places[i].landing];
+            position_[i] = l.position, carried_[i] = {l.flux, l.patch, l.direction_and_way};
+          }
+          continue;
+        }
+        const auto two = halve(r);
+        open.insert(open.end(), two.begin(), two.end());
+      }
+    }
+  });
+}
+
+std::vector<Landing> send_photons(const Illumination& light, std::size_t particles, std::span<const ParticleWay> wanted,
+                                  std::uint64_t seed, const Monitor& monitor) {
+  const Emission emission(light);
+  constexpr std::size_t kBlock = 1 << 10, kRound = 256;
+  const std::size_t blocks = (particles + kBlock - 1) / kBlock;
+  std::vector<Landing> photons;
+  double followed = 0;
+  for (std::size_t begin = 0; begin < blocks; begin += kRound) {
+    monitor.report("photons", static_cast<double>(begin) / static_cast<double>(blocks));
+    std::vector<ParticleWays> ways(std::min(kRound, blocks - begin));
+    parallel_for(ways.size(), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t b = from; b < to; ++b) {
+        const std::size_t first = (begin + b) * kBlock;
+        ways[b] = follow_particles(light, emission, stream_key(seed, kPhotons), static_cast<std::uint32_t>(first),
+                                   static_cast<std::uint32_t>(std::min(kBlock, particles - first)), monitor);
+        std::erase_if(ways[b].landings,
+                      [&](const Landing& l) { return std::ranges::find(wanted, l.way()) == wanted.end(); });
+      }
+    });
+    if (monitor.should_stop()) break;
+    followed = static_cast<double>(std::min((begin + ways.size()) * kBlock, particles));
+    for (const ParticleWays& w : ways) photons.insert(photons.end(), w.landings.begin(), w.landings.end());
+  }
+  for (Landing& photon : photons)
+    for (float& flux : photon.flux) flux = static_cast<float>(flux / followed);
+  return photons;
+}
+
+Spectrum irradiance(const PhotonMap& map, const PatchSet& patches, const Vec3& p, const Vec3& n, std::size_t count,
+                    double radius, std::vector<PhotonMap::Neighbour>& found) {
+  const double within = map.nearest(
+      p, radius, count, found, [&](const Landing& photon) { return dot(patches.normal[photon.patch], n) > kAlike; });
+  Spectrum flux(0.0);
+  for (const PhotonMap::Neighbour& at : found) {
+    const auto& [r, g, b] = map[at.photon].flux;
+    flux += Spectrum(double{r}, double{g}, double{b}) * (1 - double{at.distance2} / within);
+  }
+  return flux / (std::numbers::pi * within / 2);
+}
+
+}  // namespace clerestory

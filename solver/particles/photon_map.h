@@ -1,0 +1,136 @@
+#pragma once
+// Landings of particles, to be found by where they are: a balanced kd-tree.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/model/monitor.h"
+#include "solver/particles/landings.h"
+
+namespace clerestory {
+
+/// A tree over landings that is halved at the median along its longest side down to buckets of 8 to 15. Nodes need no
+/// pointers: those of a level lie side by side, and halves are as equal as can be, so ranges follow from the number.
+/// 33 bytes a landing. Same for any thread count. Read-only, thread safe.
+/// Source: Jensen, "Realistic image synthesis using photon mapping", 2001; Bentley, "Multidimensional binary search
+/// trees used for associative searching", 1975.
+class PhotonMap {
+ public:
+  struct Neighbour {
+    float distance2;       ///< [m2]
+    std::uint32_t photon;  ///< number in this map
+  };
+
+  PhotonMap() = default;
+  /// Cost: O(n log n), on all threads. Up to 2^31 landings.
+  explicit PhotonMap(std::span<const Landing> landings);
+
+  std::size_t size() const { return position_.size(); }
+  Landing operator[](std::size_t photon) const {
+    const Carried& c = carried_[photon];
+    return {position_[photon], c.flux, c.patch, c.direction_and_way};
+  }
+
+  /// Up to `count` landings that are nearest to p and nearer than `radius`, of those that `counts` likes; in no order.
+  ///
+  /// found    room for them that is used again; filled with the result.
+  /// returns  radius squared that all lie within: of the farthest where there are `count`, else that given [m2].
+  template <class Counts>
+  double nearest(const Vec3& p, double radius, std::size_t count, std::vector<Neighbour>& found,
+                 const Counts& counts) const;
+  double nearest(const Vec3& p, double radius, std::size_t count, std::vector<Neighbour>& found) const {
+    return nearest(p, radius, count, found, [](const Landing&) { return true; });
+  }
+
+ private:
+  struct Node {
+    float at;
+    std::uint32_t axis;
+  };
+  static constexpr std::size_t kBucket = 16;  // smaller ones are not halved
+
+  std::vector<Node> nodes_;  ///< node k has the halves 2 k + 1 and 2 k + 2
+  // What a search looks at, and the rest: a query reads three times as many places as it finds.
+  std::vector<std::array<float, 3>> position_;
+  struct Carried {
+    std::array<float, 3> flux;
+    std::uint32_t patch, direction_and_way;
+  };
+  std::vector<Carried> carried_;
+};
+
+/// Landings of `particles` particles from all lights whose way is one of those asked for, each with its share of the
+/// light's flux. Same for any thread count.
+///
+/// monitor  when it stops, those of the particles followed so far.
+std::vector<Landing> send_photons(const Illumination& light, std::size_t particles, std::span<const ParticleWay> ways,
+                                  std::uint64_t seed, const Monitor& monitor = {});
+
+/// Irradiance [W/m2] at point p of a surface with unit normal n: of the `count` landings nearest within `radius` on
+/// patches that face as it does, weighted by 1 - (r / R)^2, R that of the farthest, which itself does not count. Where
+/// the surface ends within R it is too dark; surface_kernels.h knows that.
+///
+/// found  room that is used again.
+Spectrum irradiance(const PhotonMap& map, const PatchSet& patches, const Vec3& p, const Vec3& n, std::size_t count,
+                    double radius, std::vector<PhotonMap::Neighbour>& found);
+
+template <class Counts>
+double PhotonMap::nearest(const Vec3& p, double radius, std::size_t count, std::vector<Neighbour>& found,
+                          const Counts& counts) const {
+  found.clear();
+  if (position_.empty() || count == 0) return radius * radius;
+  const std::array<float, 3> at{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  auto within = static_cast<float>(std::min(radius * radius, 1e38));
+  const auto farther = [](const Neighbour& a, const Neighbour& b) { return a.distance2 < b.distance2; };
+  struct Part {
+    std::size_t node, begin, end;
+    float distance2;
+  };
+  std::array<Part, 64> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {0, 0, position_.size(), 0};
+  while (depth > 0) {
+    auto [node, begin, end, distance2] = stack[--depth];
+    if (distance2 >= within) continue;
+    while (end - begin >= kBucket) {
+      const std::size_t middle = begin + (end - begin) / 2;
+      const float beyond = at[nodes_[node].axis] - nodes_[node].at, d2 = beyond * beyond;
+      if (beyond < 0) {
+        if (d2 < within) stack[depth++] = {2 * node + 2, middle, end, d2};
+        node = 2 * node + 1, end = middle;
+      } else {
+        if (d2 < within) stack[depth++] = {2 * node + 1, begin, middle, d2};
+        node = 2 * node + 2, begin = middle;
+      }
+    }
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto& [x, y, z] = position_[k];
+      const float dx = x - at[0], dy = y - at[1], dz = z - at[2];
+      const float d2 = dx * dx + dy * dy + dz * dz;
+      if (!(d2 < within) || !counts((*this)[k])) continue;
+      const Neighbour neighbour{d2, static_cast<std::uint32_t>(k)};
+      if (found.size() < count) {
+        found.push_back(neighbour);
+        if (found.size() < count) continue;
+        std::make_heap(found.begin(), found.end(), farther);
+      } else {
+        // The farthest makes room: it is sifted down from the top.
+        std::size_t hole = 0;
+        for (std::size_t child = 1; child < count; child = 2 * hole + 1) {
+          if (child + 1 < count && found[child].distance2 < found[child + 1].distance2) ++child;
+          if (!(d2 < found[child].distance2)) break;
+          found[hole] = found[child], hole = child;
+        }
+        found[hole] = neighbour;
+      }
+      within = found.front().distance2;
+    }
+  }
+  return found.size() < count ? radius * radius : double{within};
+}
+
+}  // namespace clerestory

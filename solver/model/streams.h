@@ -38,6 +38,7 @@ enum Stream : std::uint64_t {
   kNoisyPatches = 0x84,
   kMatrixPairs = 0xd1,
   kEchoFactors = 0xd2,
+  kParticles = 0x52,
   // Points, by number.
   kPathsOfSensor = 0x61,
   kPathsOfSample = 0x62,

@@ -156,16 +156,17 @@ Emission::Impl::Impl(const Illumination& of) : light(of) {
       if (k < kFaces) flux += gates[k].area * sky->irradiance(gates[k].normal);
     }
   }
-  // Over the box as many as over the openings, where there are any that light comes in by.
+  // Where light comes in by openings, most particles are sent through them: rooms are what is asked for.
+  constexpr double kOverBox = 1.0 / 3;  // for one over openings
   double over_box = 0, over_openings = 0;
   for (std::size_t entry = first_sun; entry < weight.size(); ++entry) {
     const bool is_face = (entry - first_sun) % gates.size() < kFaces;
     (is_face ? over_box : over_openings) += weight[entry];
     if (is_face && entry < first_sky) flux += weight[entry];
   }
-  if (over_openings > 0 && over_openings < over_box)
+  if (over_openings > 0 && kOverBox * over_openings < over_box)
     for (std::size_t entry = first_sun; entry < weight.size(); ++entry)
-      if ((entry - first_sun) % gates.size() < kFaces) weight[entry] *= over_openings / over_box;
+      if ((entry - first_sun) % gates.size() < kFaces) weight[entry] *= kOverBox * over_openings / over_box;
 
   first_patch = weight.size();
   for (std::size_t i = 0; i < set.patch_count(); ++i) {

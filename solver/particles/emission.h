@@ -30,8 +30,9 @@ struct Emitted {
 /// Chooses particles in proportion to the flux of what sends them, so that their luminous flux is one for all
 /// luminaires and patches. Sun and sky are looked for over the box around the scene, so that nothing is missed, and in
 /// scenes with openings over these as well: as many particles as are worth the flux through the openings, which is what
-/// rooms get of it, and no more than as many over the box. Both count together as one choice (one-sample balance
-/// heuristic), so particles outside of rooms carry more, and those that openings let in less by up to a half.
+/// rooms get of it, and no more than a third of that over the box. Both count together as one choice (one-sample
+/// balance heuristic), so particles outside of rooms carry more, and those that openings let in less by up to a
+/// quarter.
 ///
 /// Lights of a Lights in mirrors send nothing: mirrors turn particles. Luminaires with an opening send from all over
 /// it, whatever the distance. Directions of sky: cells of a table, each taken by its mean, so the flux varies by what

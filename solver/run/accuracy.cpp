@@ -4,6 +4,7 @@
 
 #include "solver/hierarchy/trace_links.h"
 #include "solver/methods/hierarchical.h"
+#include "solver/methods/particles.h"
 #include "solver/methods/path.h"
 #include "solver/methods/progressive.h"
 
@@ -31,6 +32,7 @@ constexpr Effort kDraft{
     .noisy_patches = {.bundle = {16, 256, 256}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 64,
     .paths_of_sensor = 256,
+    .particles = 100,
     .error = {.points = 64, .paths = 256, .rays = 6e4, .gather = {{8, 128, 128}, {0, 2, 0.02, 256}, 32, 16}},
     .year = {145, 12, 0, 8, 12, 128, 64},
 };
@@ -55,6 +57,7 @@ constexpr Effort kStandard{
     .noisy_patches = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 256,
     .paths_of_sensor = 1024,
+    .particles = 400,
     .error = {.points = 256, .paths = 128, .rays = 1.5e5, .gather = {{16, 256, 256}, {1, 3, 0.01, 512}, 32, 16}},
     .year = {577, 8, 64, 16, 16, 256, 256},
 };
@@ -69,7 +72,7 @@ static_assert(DirectOptions{}.shadow_rays == kStandard.direct.shadow_rays &&
               DirectOptions{}.sky_rays == kStandard.direct.sky_rays);
 static_assert(ShootOptions{}.stop_fraction == kStandard.stop_fraction &&
               ShootOptions{}.rays_per_patch == kStandard.rays_per_patch);
-static_assert(PathOptions{}.paths == kStandard.paths);
+static_assert(PathOptions{}.paths == kStandard.paths && ParticleOptions{}.particles == kStandard.particles);
 
 constexpr Effort kFine{
     .triangles_to_halve = 5000,
@@ -92,6 +95,7 @@ constexpr Effort kFine{
     .noisy_patches = {.bundle = {16, 256, 1024}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16},
     .paths = 1024,
     .paths_of_sensor = 4096,
+    .particles = 1600,
     .error = {.points = 512, .paths = 512, .rays = 1e6, .gather = {{16, 256, 512}, {1, 3, 0.01, 512}, 64, 32}},
     .year = {2305, 5, 256, 32, 24, 512, 1024},
 };
@@ -111,6 +115,7 @@ Effort effort(Accuracy accuracy, int times) {
        {&e.bundle_rays, &e.bright_rays, &e.direct.edge_rays, &e.direct.sky_rays, &e.paths, &e.paths_of_sensor})
     *rays <<= times;
   e.rays_per_patch = std::ldexp(e.rays_per_patch, times);
+  e.particles = std::ldexp(e.particles, times);
   e.vertex_tolerance *= std::pow(kTighterEdge, times);
   tighten(e.vertices, times);
   tighten(e.sensors, times);

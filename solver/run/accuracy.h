@@ -45,6 +45,7 @@ struct Effort {
   double rays_per_patch;
   GatherQuality noisy_patches;  ///< of patches that few rays of a shot met
   int paths, paths_of_sensor;   ///< from each patch and vertex; from each sensor
+  double particles;             ///< sent for each patch
 
   ErrorEffort error;
   YearEffort year;

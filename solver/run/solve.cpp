@@ -16,6 +16,7 @@
 #include "solver/methods/jacobi.h"
 #include "solver/methods/near_points.h"
 #include "solver/methods/noisy_patches.h"
+#include "solver/methods/particles.h"
 #include "solver/methods/path.h"
 #include "solver/methods/progressive.h"
 #include "solver/model/error.h"
@@ -70,7 +71,11 @@ void require_possible(const Problem& problem, const SolveOptions& options) {
   if ((by_matrix || by_bf) && problem.rays.has_mirrors())
     throw InputError(
         "the scene has mirrors, which form factors do not see; use " +
-        std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive, path or bidirectional"));
+        std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive, path, bidirectional or particles"));
+}
+
+ParticleOptions particle_options(const SolveOptions& options) {
+  return {.particles = effort_of(options).particles, .seed = options.seed};
 }
 
 /// A room is resolved as it would be alone, in a model of its faces and as many behind them; one that was good enough
@@ -230,6 +235,7 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
   const Effort e = effort_of(options);
   require_possible(problem, options);
   const Illumination light(problem);
+  if (options.method == Method::particles) return trace_particles(light, particle_options(options), nullptr, monitor);
   DirectOptions direct_options = e.direct;
   direct_options.seed = options.seed;
   const DirectLight direct = direct_light(light, direct_options, monitor);
@@ -279,6 +285,11 @@ double seconds_for_vertices(const Problem& problem, const Gathers& vertices, con
 
 SolvedPatches solve_by_other_method(const Problem& problem, VertexLightmap map, const SolveOptions& options,
                                     const Monitor& monitor, FormFactorMatrix* keep_matrix) {
+  if (options.method == Method::particles) {
+    SolvedPatches solved{{}, std::move(map), {}, options.accuracy};
+    solved.solution = trace_particles(Illumination(problem), particle_options(options), &solved.lightmap, monitor);
+    return solved;
+  }
   const Effort e = effort_of(options);
   const auto gathers_at = [&](const VertexLightmap& m) {
     return Gathers{m.sample_position.size(), sample_points(m, problem.rays), e.vertices};

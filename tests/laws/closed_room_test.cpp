@@ -106,9 +106,25 @@ TEST(Furnace, TheShippedRoomWithPartitionAndBlockIsWhiteEverywhere) {
   EXPECT_LT(largest_deviation(result.of_points.at("irradiance"), 500), 1e-2);
 }
 
+TEST(CornellBox, HasTheSameFluxOnEverySurfaceByParticlesAndByTheHierarchy) {
+  const TempFolder folder;
+  const auto flux = [&](const char* method) {
+    const ResultFile r = solve(shipped_scene("cornell_box.json"), folder, {"--method", method});
+    std::vector<double> of_surface(r.texts.at("surface_names").size(), 0.0);
+    for (std::size_t i = 0; i < r.triangles.size(); ++i)
+      of_surface[static_cast<std::size_t>(r.of_cells.at("surface").values[i])] +=
+          r.of_cells.at("illuminance").values[i] * r.of_cells.at("area").values[i];
+    return of_surface;
+  };
+  const std::vector<double> particles = flux("particles"), hierarchy = flux("hierarchical");
+  // 2.4 million particles know a surface to some 0.2 %, links at `standard` to 0.5 %.
+  for (std::size_t k = 0; k < particles.size(); ++k)
+    EXPECT_NEAR(particles[k], hierarchy[k], 0.01 * hierarchy[k] + 0.002 * hierarchy[0]) << k;
+}
+
 TEST(ParallelPlates, TheUpperPlateReceivesTheFormFactorOfTheCatalogue) {
   const TempFolder folder;
-  for (const char* method : {"progressive", "gauss-seidel", "path"}) {
+  for (const char* method : {"progressive", "gauss-seidel", "path", "bidirectional", "particles"}) {
     SCOPED_TRACE(method);
     const ResultFile result = solve(shipped_scene("parallel_plates.json"), folder, {"--method", method});
     const auto& names = result.texts.at("surface_names");

@@ -95,15 +95,17 @@ TEST_P(Diffuser, BetweenTwoRoomsKeepsTheEnergy) {
   const PatchSet patches = b.build();
   const Result r = solve_by(GetParam(), patches, {});
   EXPECT_NEAR(r.solution.energy.emitted, 100, 1e-6);
-  const bool estimate = is_by_paths(GetParam());
+  const bool estimate = is_by_paths(GetParam()) || GetParam() == Method::particles;
   EXPECT_NEAR(r.solution.energy.imbalance(), 0, estimate ? 1e-2 : 1e-3);
   EXPECT_NEAR(r.solution.energy.escaped, 0, 1e-6);
   const auto [absorbed, behind] = absorbed_and_behind(r);
   EXPECT_NEAR(absorbed, r.solution.energy.absorbed, 1e-6 * absorbed);
   // Constant elements of 1/4 m: halving them, and the noise of rays and paths, changes this by less than 1 %.
   const Result matrix = solve_by(Method::gauss_seidel, patches, {});
-  EXPECT_NEAR(behind / absorbed_and_behind(matrix).second, 1, 0.01);
-  EXPECT_NEAR(mean(r, 2, r.solution.E) / mean(matrix, 2, matrix.solution.E), 1, 0.01);
+  // Particles: 200,000, of which one in ten gets behind the sheet, and lands there three times.
+  const double tolerance = GetParam() == Method::particles ? 0.03 : 0.01;
+  EXPECT_NEAR(behind / absorbed_and_behind(matrix).second, 1, tolerance);
+  EXPECT_NEAR(mean(r, 2, r.solution.E) / mean(matrix, 2, matrix.solution.E), 1, tolerance);
 }
 
 TEST_P(Diffuser, InsideAFurnaceIsAsBrightAsTheWalls) {
@@ -120,7 +122,8 @@ TEST_P(Diffuser, InsideAFurnaceIsAsBrightAsTheWalls) {
   }());
   const Result r = solve_by(GetParam(), patches, {});
   for (std::size_t i = 0; i < r.patches.patch_count(); ++i) {
-    const double tolerance = is_by_paths(GetParam()) ? 6 * r.solution.std_error[i][0] + 1e-9 : 1e-2;
+    const bool estimate = is_by_paths(GetParam()) || GetParam() == Method::particles;
+    const double tolerance = estimate ? 6 * r.solution.std_error[i][0] + 1e-9 : 1e-2;
     ASSERT_NEAR(r.solution.E[i][0], 20, tolerance) << i;
     ASSERT_NEAR(r.solution.B[i][0], 20, tolerance) << i;
   }
@@ -128,7 +131,7 @@ TEST_P(Diffuser, InsideAFurnaceIsAsBrightAsTheWalls) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Diffuser,
                          testing::Values(Method::hierarchical, Method::progressive, Method::gauss_seidel,
-                                         Method::jacobi, Method::path, Method::bidirectional));
+                                         Method::jacobi, Method::path, Method::bidirectional, Method::particles));
 
 TEST(DiffuserSides, TakePartTogetherWhenLightReachesOne) {
   // A box without openings, one of whose walls is a diffuser in the sky's light.

@@ -176,7 +176,7 @@ TEST(Reflection, AStreetBeforeASunlitGlassFacade) {
     return from_sky(d, random);
   });
   compare(scene, spec, exact, {{"pavement", pavement}, {"house", house}},
-          {Method::progressive, Method::path, Method::bidirectional, Method::gauss_seidel});
+          {Method::progressive, Method::path, Method::bidirectional, Method::particles, Method::gauss_seidel});
 }
 
 PhotonTracer::Photon from_lamp(const Vec3& lamp, PhotonTracer::Random& random) {
@@ -201,7 +201,7 @@ TEST(Reflection, ARoomAtNightBehindItsGlazing) {
   PhotonTracer exact = scene.tracer();
   exact.follow(4'000'000, 100, [&](PhotonTracer::Random& random) { return from_lamp(lamp, random); });
   compare(scene, spec, exact, {{"floor", 0}, {"face", face}},
-          {Method::progressive, Method::gauss_seidel, Method::path, Method::bidirectional});
+          {Method::progressive, Method::gauss_seidel, Method::path, Method::bidirectional, Method::particles});
 }
 
 TEST(Reflection, ALiftBetweenTwoMirrors) {
@@ -221,7 +221,7 @@ TEST(Reflection, ALiftBetweenTwoMirrors) {
   PhotonTracer exact = scene.tracer();
   exact.follow(1'000'000, 100, [&](PhotonTracer::Random& random) { return from_lamp(lamp, random); });
   compare(scene, spec, exact, {{"floor", floor}, {"back", back}},
-          {Method::progressive, Method::path, Method::bidirectional});
+          {Method::progressive, Method::path, Method::bidirectional, Method::particles});
 }
 
 /// Irradiance at p straight from lamps and suns.
@@ -361,7 +361,7 @@ TEST_P(CubeOfPanes, LightInItEndsThoughTheyLetNothingPass) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes,
-                         testing::Values(Method::progressive, Method::path, Method::bidirectional));
+                         testing::Values(Method::progressive, Method::path, Method::bidirectional, Method::particles));
 
 TEST(Reflection, TheShareOfAnImageIsWhatIsLeftOnItsWay) {
   PatchBuilder b(0.0);

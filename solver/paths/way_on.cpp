@@ -11,11 +11,6 @@ constexpr double kBySlit = 0.5;
 
 }  // namespace
 
-Vec3 in_plane_of(const PatchSet& patches, PatchId p, const Vec3& x) {
-  const Vec3& n = patches.normal[p];
-  return x - n * dot(n, x - patches.vertices[patches.corners[patches.triangle[p]][0]]);
-}
-
 double density_of_ways(const Illumination& light, const Vec3& p, const Vec3& n, const Vec3& d) {
   const double cosine = dot(n, d) / std::numbers::pi;
   return light.slits.reaches(p, n) ? (1 - kBySlit) * cosine + kBySlit * light.slits.preference(p, n, d) : cosine;

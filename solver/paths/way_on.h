@@ -8,10 +8,6 @@
 
 namespace clerestory {
 
-/// The place of a patch's plane that x is nearest to. Rays in float hit it only nearly, and one bounce in ten thousand
-/// would go on from behind it: at a reflectance of 0.999999 most paths.
-Vec3 in_plane_of(const PatchSet& patches, PatchId p, const Vec3& x);
-
 /// Mostly in proportion to the cosine; where there are slits, half of the paths through one of them: others find them
 /// once in a thousand times. Either way counts by its share of both densities.
 struct WayOn {

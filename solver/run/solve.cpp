@@ -71,7 +71,7 @@ void require_possible(const Problem& problem, const SolveOptions& options) {
   if ((by_matrix || by_bf) && problem.rays.has_mirrors())
     throw InputError(
         "the scene has mirrors, which form factors do not see; use " +
-        std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive, particles, path or bidirectional"));
+        std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive, path, bidirectional or particles"));
 }
 
 ParticleOptions particle_options(const SolveOptions& options) {

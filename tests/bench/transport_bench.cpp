@@ -84,8 +84,8 @@ int run() {
   DirectLight none_direct;
   none_direct.E = Field(patches.patch_count(), 1);
   const double start = seconds();
-  const Solution reference =
-      path_trace(light, none_direct, measure_closure(problem, 64, 1), {.paths = 1024, .seed = 7});
+  const Solution reference = path_trace(light.problem, light, "path", none_direct, measure_closure(problem, 64, 1),
+                                        {.paths = 1024, .seed = 7});
   const double path_time = seconds() - start;
   double difference = 0, noise = 0, mean = 0, area = 0;
   for (std::size_t i = 0; i < patches.patch_count(); ++i) {

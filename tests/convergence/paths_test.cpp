@@ -31,7 +31,8 @@ TEST(Paths, ErrLessByTheRootOfTheirNumber) {
   test::Errors errors;
   for (const int paths : {16, 32, 64, 128, 256})
     errors.add(paths, test::rms_over_seeds(kSeeds, [&](std::uint64_t seed) {
-                 const Solution s = path_trace(light, dark, closure, {.paths = paths, .seed = seed});
+                 const Solution s =
+                     path_trace(light.problem, light, "path", dark, closure, {.paths = paths, .seed = seed});
                  double mean = 0;
                  for (std::size_t i = 0; i < patches.patch_count(); ++i)
                    mean += patches.area[i] * s.E[i][0] / patches.total_area();

@@ -143,7 +143,9 @@ Solution paths(const Room& room, const PatchSet& leaves, int count) {
   const Closure closure = measure_closure(problem, 16, 1);
   std::vector<Field> parts;
   for (std::uint64_t part = 0; part < kParts; ++part)
-    parts.push_back(path_trace(Illumination(problem), none, closure, {.paths = count / kParts, .seed = 99 + part}).E);
+    parts.push_back(
+        path_trace(problem, Illumination(problem), "path", none, closure, {.paths = count / kParts, .seed = 99 + part})
+            .E);
   Solution all;
   all.E = all.std_error = Field(leaves.patch_count(), 1);
   for (std::size_t i = 0; i < leaves.patch_count(); ++i) {

@@ -302,7 +302,7 @@ TEST_F(SceneFile, UnknownKeysAndNamesGetTheNearestSuggestion) {
             "s.json: materials 'wood': reflectence is not a known key; did you mean 'reflectance'?");
   EXPECT_EQ(refusal_with(R"("solver": { "method": "radiosity" })"),
             "s.json: solver.method 'radiosity' is not known; known are hierarchical, progressive, gauss-seidel, "
-            "jacobi, path");
+            "jacobi, path, particles");
   EXPECT_EQ(refusal_with(R"("solver": { "time-limit": 3 })"),
             "s.json: solver.time-limit is not a known key; did you mean 'time_limit'?");
   EXPECT_EQ(refusal(folder_.write("s.json", R"({ "geometry": [ { "file": "room.obj", "unit": "metre" } ] })")),

@@ -73,6 +73,8 @@ void add_input_options(CLI::App& command, std::string& input, ReadOptions& optio
                   "sky for a model given directly: uniform, cie-overcast, cie-general-1, -3, -5 or -16; lux on open "
                   "ground (default: 10000)")
       ->type_name("NAME[:LUX]");
+  add_choice(command, "--gloss", options.gloss, {"model"},
+             "take the gloss of the model's own materials (default: they are diffuse)");
 }
 
 void add_choice(CLI::App& command, const std::string& name, std::optional<std::string>& value,

@@ -30,7 +30,7 @@ void add_common_options(CLI::App& command, CommonArguments& arguments);
 void add_solution_input(CLI::App& command, std::string& input,
                         const std::string& help = "a result of clerestory solve");
 
-/// INPUT, --unit, --up, --sky
+/// INPUT, --unit, --up, --sky, --gloss
 void add_input_options(CLI::App& command, std::string& input, ReadOptions& options);
 
 /// An option that takes one of some words.

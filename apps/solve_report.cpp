@@ -41,6 +41,7 @@ std::vector<std::string> what_was_left_out(const Scene& scene, const Solved& s) 
     if (std::ranges::none_of(s.patches.materials,
                              [&](const Material& m) { return static_cast<std::size_t>(m.kind) == kind; }))
       out.push_back(kPlural[kind] + std::string(": the scene has none"));
+  out.insert(out.end(), scene.left_out.begin(), scene.left_out.end());
   if (s.lit_sides.dark_sides) out.push_back(counted(s.lit_sides.dark_sides, "side") + " that no light can reach");
   if (s.lit_sides.luminaire_interiors)
     out.push_back(counted(s.lit_sides.luminaire_interiors, "emitting side") +

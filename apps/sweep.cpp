@@ -94,7 +94,7 @@ std::vector<Run> runs_of(const std::string& input, const ReadOptions& read, cons
   const auto add = [&](const char* option, const std::optional<std::string>& value) {
     if (value) shared.insert(shared.end(), {option, *value});
   };
-  add("--unit", read.unit), add("--up", read.up), add("--sky", read.sky);
+  add("--unit", read.unit), add("--up", read.up), add("--sky", read.sky), add("--gloss", read.gloss);
   if (common.seed) shared.insert(shared.end(), {"--seed", std::to_string(*common.seed)});
   std::vector<Run> runs;
   for (const bool with_matrix : {false, true})

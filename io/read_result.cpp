@@ -143,6 +143,8 @@ std::vector<Material> materials_of(const Tables& tables, const WrittenResult& re
   const std::vector<std::string> kinds = names(result, arrays::kMaterialKinds, n);
   const std::vector<double> rho = tables.numbers(arrays::kMaterialReflectance, 3, n),
                             tau = tables.numbers(arrays::kMaterialTransmittance, 3, n);
+  const bool has_gloss = tables.has(arrays::kMaterialGloss);
+  const std::vector<double> gloss = has_gloss ? tables.numbers(arrays::kMaterialGloss, 5, n) : std::vector<double>{};
   std::vector<Material> materials(n);
   for (std::size_t i = 0; i < n; ++i) {
     const auto kind = std::ranges::find(kMaterialKindNames, kinds[i]);
@@ -155,6 +157,15 @@ std::vector<Material> materials_of(const Tables& tables, const WrittenResult& re
                           " of the light, which is outside [0, 1]"));
     materials[i].reflectance = {rho[3 * i], rho[3 * i + 1], rho[3 * i + 2]};
     materials[i].transmittance = {tau[3 * i], tau[3 * i + 1], tau[3 * i + 2]};
+    if (materials[i].kind != MaterialKind::glossy) continue;
+    const bool is_lobe = has_gloss &&
+                         std::all_of(&gloss[5 * i], &gloss[5 * i] + 3, [](double x) { return x >= 0 && x < 1; }) &&
+                         gloss[5 * i + 4] > 0 && gloss[5 * i + 4] <= 1 && gloss[5 * i + 3] <= 1e6;
+    if (!is_lobe)
+      refuse(file,
+             text("its material '", quotable(at->second[i]), "' is glossy, and has no lobe that a surface can have"));
+    materials[i].gloss = Gloss{{gloss[5 * i], gloss[5 * i + 1], gloss[5 * i + 2]}, {}, gloss[5 * i + 4]};
+    if (gloss[5 * i + 3] >= 0) materials[i].gloss->exponent = gloss[5 * i + 3];
   }
   return materials;
 }

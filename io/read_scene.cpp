@@ -33,7 +33,7 @@ Scene read_lone_model(const std::filesystem::path& file, const ReadOptions& opti
   Model model = read_model(file);
   note_files(scene, file, model);
   take_texture_means(model, [](const std::string&) { return false; });
-  ModelsInScene none;
+  ModelsInScene none{.takes_gloss = options.gloss.has_value()};
   place_model(scene, none, model, file, placement);
   return scene;
 }

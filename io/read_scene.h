@@ -13,10 +13,11 @@ namespace clerestory {
 /// What the command line says about a model given directly; a scene file says it itself.
 /// times: of a scene file, see Scene::times.
 struct ReadOptions {
-  std::optional<std::string> unit{};  ///< m | cm | mm | ft | in
-  std::optional<std::string> up{};    ///< y | z
-  std::optional<std::string> sky{};   ///< NAME[:LUX]
-  std::vector<Moment> times{};        ///< in place of the scene file's own; empty: that
+  std::optional<std::string> unit{};   ///< m | cm | mm | ft | in
+  std::optional<std::string> up{};     ///< y | z
+  std::optional<std::string> sky{};    ///< NAME[:LUX]
+  std::vector<Moment> times{};         ///< in place of the scene file's own; empty: that
+  std::optional<std::string> gloss{};  ///< model: of materials that the scene file does not describe
   bool for_a_year = false;  ///< of a scene file's daylight only what is there in any hour: place, north, and the ground
 };
 

@@ -13,6 +13,7 @@ inline constexpr const char* kMaterialNames = "material_names";
 inline constexpr const char* kMaterialKinds = "material_kinds";
 inline constexpr const char* kMaterialReflectance = "material_reflectance";
 inline constexpr const char* kMaterialTransmittance = "material_transmittance";
+inline constexpr const char* kMaterialGloss = "material_gloss";  ///< specular, exponent or -1, roughness
 inline constexpr const char* kSurfaceNames = "surface_names";
 inline constexpr const char* kRoomNames = "room_names";
 inline constexpr const char* kPaneCorners = "pane_corners";

@@ -110,6 +110,11 @@ void add_materials(vtkFieldData* to, const std::vector<Material>& materials) {
               [&](std::size_t i, int c) { return materials[i].reflectance[c]; });
   add_numbers(to, arrays::kMaterialTransmittance, n, 3,
               [&](std::size_t i, int c) { return materials[i].transmittance[c]; });
+  if (std::ranges::none_of(materials, &Material::is_glossy)) return;
+  add_numbers(to, arrays::kMaterialGloss, n, 5, [&](std::size_t i, int c) {
+    const Gloss gloss = materials[i].gloss.value_or(Gloss{});
+    return c < 3 ? gloss.specular[c] : c == 3 ? gloss.exponent.value_or(-1) : gloss.roughness;
+  });
 }
 
 void add_panes(vtkFieldData* to, const std::vector<PaneTriangle>& panes) {

@@ -32,6 +32,17 @@ void check_material(const Scene& scene, const Material& m) {
   check(m.reflectance, "reflectance", false);
   check(m.transmittance, "transmittance", true);
   if (m.scatters_through()) check(m.reflectance + m.transmittance, "reflectance + transmittance", false);
+  if (m.gloss && !m.is_glossy()) refuse(scene, name + "has a lobe, which glossy materials alone have.");
+  if (m.is_glossy() && !m.gloss) refuse(scene, name + "is glossy and has no lobe.");
+  if (m.gloss) {
+    check(m.gloss->specular, "specular", false);
+    check(m.reflectance + m.gloss->specular, "reflectance + specular", false);
+    if (m.gloss->exponent && !(*m.gloss->exponent >= 0 && std::isfinite(*m.gloss->exponent)))
+      refuse(scene, name + "exponent = " + rounded(*m.gloss->exponent) + "; it is 0 or more.");
+    if (!m.gloss->exponent && !(m.gloss->roughness > 0 && m.gloss->roughness <= 1))
+      refuse(scene, name + "roughness = " + rounded(m.gloss->roughness) + " is outside (0, 1].");
+    if (m.sides != 2) refuse(scene, name + "sides = 1; a glossy surface reflects on both of its sides.");
+  }
   if (!is_light(m.exitance))
     refuse(scene, name + "exitance = " + value(m.exitance) + " W/m2 is negative or no number.");
   if (m.total_power && !is_light(*m.total_power))

@@ -76,8 +76,8 @@ void warn_about_error(const Solved& s, Observer& observer) {
                 percent(e.rms_relative) + " rms (+- " + percent(e.confidence) + "), more than the " + percent(stated) +
                 " that this accuracy stands for" + (is_in_room ? rooms_above(stated, *s.error, worst) : std::string()) +
                 ": " +
-                (s.settings.solve.method == Method::path || s.settings.solve.method == Method::particles
-                     ? "too few " + std::string(s.settings.solve.method == Method::path ? "paths" : "particles") +
+                (is_by_paths(s.settings.solve.method) || s.settings.solve.method == Method::particles
+                     ? "too few " + std::string(is_by_paths(s.settings.solve.method) ? "paths" : "particles") +
                            " find the light. Do not rely on single values; try --accuracy fine."
                      : "light changes faster than the elements show, beside a lamp or a narrow gap. Do not rely on "
                        "single values of the picture; " +

@@ -250,9 +250,9 @@ void add_solve_command(CLI::App& program, Task& task) {
       ->required();
   require_extension(command, "--output", {".vtp", ".pvd"});
   SolveArguments& s = arguments->solve;
-  add_checked_word(
-      command, "--method", s.method, problem_with_method,
-      "hierarchical, progressive, gauss-seidel, jacobi, particles, or path, the unbiased reference (default: hierarchical)");
+  add_checked_word(command, "--method", s.method, problem_with_method,
+                   "hierarchical, progressive, gauss-seidel, jacobi, particles, path, the unbiased reference, or "
+                   "bidirectional, the same by paths from both ends (default: hierarchical)");
   add_checked_word(command, "--accuracy", s.accuracy, problem_with_accuracy,
                    "draft, standard or fine (default: standard)");
   add_checked_word(command, "--oracle", s.oracle, problem_with_oracle,

@@ -77,6 +77,13 @@ ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t 
       to.material.transmittance[k] = std::min(1.0, passes * to.material.reflectance[k]);
     to.material.exitance = Spectrum(0.0);
   }
+  if (old_style.empty()) {
+    // 0.04 is what glTF takes for all that is no metal; its roughness is that of a lobe.
+    constexpr double kDielectric = 0.04;
+    const auto share = [&](const char* key) { return std::clamp(finite_number(file, base, key, 1, where), 0.0, 1.0); };
+    const double metal = share("metallicFactor");
+    to.gloss = ModelGloss{Spectrum(kDielectric * (1 - metal)), metal, {}, share("roughnessFactor")};
+  }
   // Where the file says nothing, glTF's default is white, which no surface is.
   to.described = to.described || !to.material.receives();
   if (!to.described) to.material.reflectance = Spectrum(0.5);

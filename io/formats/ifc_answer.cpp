@@ -124,6 +124,11 @@ ModelMaterial read_material(const Json& json) {
     apply_opacity(to.material, 1 - json.value("transparency", 0.0));
   }
   if (passes && to.material.kind == MaterialKind::glass && passes->max() > 0) to.material.transmittance = *passes;
+  if (const Json* gloss = member(json, "gloss")) {
+    to.gloss.emplace().of_all = shares(*gloss, "specular").value_or(Spectrum(0.0));
+    if (gloss->contains("exponent")) to.gloss->exponent = gloss->at("exponent").get<double>();
+    to.gloss->roughness = gloss->value("roughness", 1.0);
+  }
   return to;
 }
 

@@ -21,8 +21,18 @@ struct ModelTexture {
 
 /// A material as the model has it, and what was assumed about it; the assumptions matter only where the scene file
 /// says nothing of the material.
+/// What a model says of the gloss of a material: specular = of_all + of_colour x its colour, of which the rest is
+/// diffuse.
+struct ModelGloss {
+  Spectrum of_all{0.0};
+  double of_colour = 0;  ///< 1: a metal
+  std::optional<double> exponent{};
+  double roughness = 1;
+};
+
 struct ModelMaterial {
   Material material;
+  std::optional<ModelGloss> gloss{};
   bool described = true;                    ///< false: the model has only its name, or not even that
   std::optional<std::size_t> texture;       ///< of Model::textures: its colour times this reflectance is what shows
   std::optional<std::size_t> glow_texture;  ///< the same of what it emits

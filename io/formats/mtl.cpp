@@ -87,6 +87,9 @@ std::vector<ModelMaterial> MtlReader::read(const std::filesystem::path& file) {
   const std::string name = short_name(file);
   std::vector<ModelMaterial> materials;
   std::vector<double> opacity, dissolve;  // of each material; dissolve -1: not given
+  std::vector<ModelGloss> gloss;          // of each; one without an exponent is none
+  std::vector<bool> has_highlight;        // illum 0 and 1 have none
+  constexpr double kSharpest = 1e6;
   std::size_t line_number = 0;
   for (std::string_view lines = text_bytes(bytes, name); !lines.empty();) {
     std::string_view rest = trimmed(next_line(lines));
@@ -100,17 +103,28 @@ std::vector<ModelMaterial> MtlReader::read(const std::filesystem::path& file) {
       Material& material = materials.emplace_back().material;
       material.name = trimmed(rest);
       materials.back().described = false;  // until there is a colour
+      gloss.emplace_back(), has_highlight.push_back(true);
       opacity.push_back(1);
       dissolve.push_back(-1);
       continue;
     }
     if (materials.empty()) {
-      if (key == "Kd" || key == "Ke") throw InputError(text(where, key, " stands before the first newmtl"));
+      if (key == "Kd" || key == "Ke" || key == "Ks")
+        throw InputError(text(where, key, " stands before the first newmtl"));
       continue;
     }
     ModelMaterial& current = materials.back();
     Material& material = current.material;
-    if (key == "Kd" || key == "Ke") {
+    if (key == "Ks") {
+      if (const auto colour = read_colour(rest, where)) gloss.back().of_all = *colour;
+    } else if (key == "Ns" || key == "illum") {
+      const auto value = to_number(next_word(rest));
+      if (!value || !(*value >= 0)) continue;  // of no weight unless gloss is asked for
+      if (key == "Ns")
+        gloss.back().exponent = std::min(*value, kSharpest);
+      else
+        has_highlight.back() = *value >= 2;
+    } else if (key == "Kd" || key == "Ke") {
       const std::optional<Spectrum> colour = read_colour(rest, where);
       if (!colour) {
         current.described = current.described || key == "Kd";
@@ -142,6 +156,7 @@ std::vector<ModelMaterial> MtlReader::read(const std::filesystem::path& file) {
     ModelMaterial& material = materials[m];
     if (material.texture && (!material.described || material.material.reflectance.is_black()))
       material.material.reflectance = Spectrum(1.0);
+    if (gloss[m].exponent && has_highlight[m]) material.gloss = gloss[m];
     material.described = material.described || material.texture || !material.material.receives();
   }
   return materials;

@@ -1,8 +1,10 @@
 #include "io/scene_file/own_materials.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/text.h"
+#include "solver/model/units.h"
 
 namespace clerestory {
 namespace {
@@ -33,7 +35,30 @@ Material OwnMaterials::settle(const ModelMaterial& own) {
     if (material.kind != MaterialKind::glass) white_.add(material.name);
     for (double& rho : material.reflectance.c) rho = std::min(rho, kWhitestReflectance);
   }
+  if (own.gloss && material.receives()) settle_gloss(*own.gloss, material);
   return material;
+}
+
+void OwnMaterials::settle_gloss(const ModelGloss& gloss, Material& material) {
+  const Spectrum specular = gloss.of_all + gloss.of_colour * material.reflectance;
+  const Spectrum diffuse = (1 - gloss.of_colour) * material.reflectance, all = specular + diffuse;
+  if (!(specular.max() > 0)) return;
+  if (!takes_gloss_) {
+    const int share = static_cast<int>(std::lround(100 * luminous_mean(specular) / luminous_mean(all)));
+    if (share > 0) matt_.add(material.name, text("(", share, " %)"));
+    return;
+  }
+  constexpr double kSmoothest = 0.01;
+  const double fits = std::min(1.0, kWhitestReflectance / all.max());
+  material.kind = MaterialKind::glossy;
+  material.reflectance = diffuse * fits;
+  material.gloss = Gloss{specular * fits, gloss.exponent, std::max(gloss.roughness, kSmoothest)};
+}
+
+std::string OwnMaterials::gloss_left_out() const {
+  if (matt_.empty()) return {};
+  return text("gloss that the model gives to ", matt_.str(),
+              ", of the light that each reflects: it is taken as diffuse; --gloss model follows it");
 }
 
 std::vector<std::string> OwnMaterials::warnings() const {

@@ -27,13 +27,21 @@ class NameList {
 /// Settles materials one by one and gathers what has to be said about them.
 class OwnMaterials {
  public:
+  /// takes_gloss  else what is glossy in the model is diffuse.
+  explicit OwnMaterials(bool takes_gloss) : takes_gloss_(takes_gloss) {}
+
   /// The model's own description, with reflectances brought below 1.
   Material settle(const ModelMaterial& own);
   /// One line for each kind of assumption.
   std::vector<std::string> warnings() const;
+  /// Which gloss was left out, and how much of the reflected light it is; empty: none.
+  std::string gloss_left_out() const;
 
  private:
-  NameList undescribed_, white_, textured_, unread_, glass_, glowing_;
+  void settle_gloss(const ModelGloss& gloss, Material& material);
+
+  bool takes_gloss_;
+  NameList undescribed_, white_, textured_, unread_, glass_, glowing_, matt_;
 };
 
 }  // namespace clerestory

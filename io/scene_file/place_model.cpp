@@ -37,7 +37,7 @@ std::vector<MaterialId> add_materials(Scene& scene, ModelsInScene& before, const
     if (!hidden[model.polygons.surface[f]]) carried[model.polygons.material[f]] = true;
   const std::size_t of_others = scene.materials.size();
   const std::string stem = clean_text(file.stem().string());
-  OwnMaterials own;
+  OwnMaterials own(before.takes_gloss);
   std::vector<MaterialId> id(model.materials.size());
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
     if (!carried[m]) continue;
@@ -56,6 +56,8 @@ std::vector<MaterialId> add_materials(Scene& scene, ModelsInScene& before, const
     scene.materials.push_back(std::move(material));
   }
   for (const std::string& warning : own.warnings()) warn_once(scene, before, short_name(file) + ": " + warning);
+  if (const std::string gloss = own.gloss_left_out(); !gloss.empty())
+    scene.left_out.push_back(short_name(file) + ": " + gloss);
   return id;
 }
 

@@ -44,9 +44,10 @@ class NamesInUse {
 /// What the models that a scene has so far have said; one for all of them, so that the thousandth is not compared with
 /// all before it.
 struct ModelsInScene {
-  NamesInUse surfaces, materials, spaces;
-  std::unordered_map<std::string, MaterialId> material;  ///< by name
-  std::unordered_set<std::string> warnings;
+  bool takes_gloss = false;  ///< of their materials
+  NamesInUse surfaces{}, materials{}, spaces{};
+  std::unordered_map<std::string, MaterialId> material{};  ///< by name
+  std::unordered_set<std::string> warnings{};
 };
 
 /// Adds what a model was read from to the scene's files.

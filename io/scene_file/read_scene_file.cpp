@@ -29,9 +29,10 @@ namespace clerestory {
 namespace {
 
 void read_geometry(const JsonObject& root, const std::string& file_name, const std::filesystem::path& folder,
-                   std::vector<MaterialRule>& rules, std::vector<FixtureRule>& fixtures, Scene& scene) {
+                   std::vector<MaterialRule>& rules, std::vector<FixtureRule>& fixtures, bool takes_gloss,
+                   Scene& scene) {
   std::map<std::filesystem::path, Model> read_before;
-  ModelsInScene placed;
+  ModelsInScene placed{.takes_gloss = takes_gloss};
   for (const auto& [where, model_file, placement] : geometry_entries(root, file_name, folder)) {
     std::error_code error;  // then read_model says what is wrong
     const std::filesystem::path one_name = std::filesystem::weakly_canonical(model_file, error);
@@ -161,7 +162,7 @@ Scene read_scene_file(const std::filesystem::path& file, const ReadOptions& opti
   }
   SensorEntries sensors;
   if (root.has("sensors")) sensors = read_sensor_entries(root.at("sensors"), name, folder);
-  read_geometry(root, name, folder, rules, fixtures, scene);
+  read_geometry(root, name, folder, rules, fixtures, options.gloss.has_value(), scene);
   scene.sensors = sets_of(std::move(sensors), scene.spaces);
   if (root.has("rooms")) read_room_entries(root.at("rooms"), name, scene);
   report_rules(rules, name, scene);

@@ -223,6 +223,10 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   StageSeconds seconds;
   std::optional<PreparedToSolve> prepared = prepare_to_solve(shown, solving, observer, monitor, seconds);
   warn_about_places(prepared->scene.problem(), shown, sensors, observer);
+  if (prepared->scene.rays.has_gloss())
+    observer.warn(shown.file +
+                  ": what glossy surfaces send on of the sun itself is left out of a year where it falls "
+                  "straight on sensors and vertices; their light of the sky and of other surfaces is in it.");
   KeptTransport kept;
   // Light at vertices is gathered again below.
   const AroundSolve around{.vertices = effort(Accuracy::draft).vertices, .keep = &kept};

@@ -218,7 +218,7 @@ GatheredLight gather_as_planned(const Illumination& light, const Vec3& p, const 
   // Where it is all but dark, what differs from a plan's mean may leave less than nothing.
   at.E = {std::max(0.0, at.E[0]), std::max(0.0, at.E[1]), std::max(0.0, at.E[2])};
   if (!light.problem.lights.empty()) {
-    at.delta_light = light.sampler.delta_light(p, n, {.sun_rays = pattern.quality().sun_rays}, pattern.sun_key(), row);
+    at.delta_light = light.sampler.delta_light(p, n, delta_effort(pattern), pattern.sun_key(), row);
     at.E += at.delta_light;
   }
   CLERESTORY_ASSERT(all_finite(at.E), ==, true);

@@ -40,6 +40,11 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
 RayShares plan_bundle(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                       const GatherPlan& plan, unsigned long long& rays);
 
+/// Lobes are half as wide again as what they show, at the least: they need more rays than the sun's disc.
+inline DeltaEffort delta_effort(const GatherPattern& pattern) {
+  return {.sun_rays = pattern.quality().sun_rays, .gloss_rays = 4 * pattern.quality().sun_rays};
+}
+
 /// Irradiance at p (lifted) on a plane of unit normal n.
 ///
 /// Luminaires and sun by shadow rays. What lies behind the openings of the plan by rays through them, and its bright

@@ -201,8 +201,8 @@ class Gatherer {
     if (!light_.problem.lights.empty()) {
       row.clear();
       const Vec3 n = at.sample_normal[s], x = light_.problem.rays.off_surface(at.sample_position[s], n);
-      here.E = here.delta_light = light_.sampler.delta_light(x, n, {.sun_rays = pattern_.quality().sun_rays},
-                                                             pattern_.sun_key(), layers_ ? &row : nullptr);
+      here.E = here.delta_light =
+          light_.sampler.delta_light(x, n, delta_effort(pattern_), pattern_.sun_key(), layers_ ? &row : nullptr);
       if (layers_) add_layers(here, row, *layers_, 1, lanes_of(field.layers, p), lanes_of(field.delta_layers, p));
       keep_to_most_delta(here, p, field);
     }

@@ -174,9 +174,11 @@ void add_luminaires(Lights& lights, const RayScene& rays, double& flux, double& 
   for (const auto& [turned, image] : std::span(all).subspan(kept)) lost -= turned;
   all.resize(kept);
   std::ranges::sort(all, {}, [](const auto& image) { return image.second; });
-  for (const auto& [turned, image] : all)
+  for (const auto& [turned, image] : all) {
     lights.luminaires.push_back(
         image_of(lights.luminaires[image.first], found[image.first].images[image.second], rays.mirrors()));
+    lights.luminaires.back().shows = static_cast<std::uint32_t>(image.first);
+  }
 }
 
 /// Triangles of one plane, with the running sum of their areas.
@@ -256,7 +258,7 @@ void add_images(Lights& lights, const PatchSet& patches, const RayScene& rays) {
       PlacedSun shown = lights.suns[s];
       for (std::size_t k = 0; k < image.way.count; ++k)
         shown.direction = rays.mirrors()[image.way.plane[k]].image_of_direction(shown.direction);
-      shown.way = image.way, shown.share = image.share;
+      shown.way = image.way, shown.share = image.share, shown.shows = static_cast<std::uint32_t>(s);
       lights.suns.push_back(shown);
     }
   }

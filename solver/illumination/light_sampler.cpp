@@ -144,7 +144,14 @@ LightSample LightSampler::on_luminaire(const Vec3& p, const Vec3& n, double pick
   const PlacedLuminaire& luminaire = problem_.lights.luminaires[choice.light];
   const Vec3 q = light_point(luminaire, p, u, v);
   const double probability = share * choice.probability;
-  return {shadow_segment(luminaire, q, p).to, open_irradiance(luminaire, q, p, n) / probability, 0, {}, luminaire.way};
+  const Vec3 end = shadow_segment(luminaire, q, p).to;
+  const Spectrum irradiance = open_irradiance(luminaire, q, p, n) / probability;
+  return {end, irradiance, 0, {}, luminaire.way, 0, choice.light, probability};
+}
+
+double LightSampler::probability_of(const PlacedSun& sun, double share) const {
+  const double power = sun.share * luminous_mean(sun.normal_irradiance);
+  return share * power * cross_section(problem_.rays) / suns_power_;
 }
 
 LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const {
@@ -159,9 +166,20 @@ LightSample LightSampler::on_sun(const Vec3& p, const Vec3& n, double pick, doub
     if (left < power) break;
   }
   const Vec3 d = direction_to_sun(*sun, u, v);
-  const double cos_n = dot(n, d), probability = share * power * cross_section(problem_.rays) / suns_power_;
+  const double cos_n = dot(n, d), probability = probability_of(*sun, share);
   if (!(cos_n > 0)) return {};
-  return {p + d * (4 * problem_.rays.diameter()), sun->normal_irradiance * (cos_n / probability), 0, {}, sun->way};
+  const std::size_t number =
+      problem_.lights.luminaires.size() + static_cast<std::size_t>(sun - problem_.lights.suns.data());
+  const Vec3 end = p + d * (4 * problem_.rays.diameter());
+  const Spectrum irradiance = sun->normal_irradiance * (cos_n / probability);
+  return {end, irradiance, 0, {}, sun->way, 0, static_cast<std::uint32_t>(number), probability};
+}
+
+double LightSampler::probability(std::uint32_t light, const Vec3& p, const Vec3& n) const {
+  const std::size_t luminaires = problem_.lights.luminaires.size();
+  const Shares s = shares(p, n);
+  if (light >= luminaires) return probability_of(problem_.lights.suns[light - luminaires], s.suns);
+  return s.luminaires > 0 ? s.luminaires * luminaires_.probability(light, {luminaires_, p, n}) : 0;
 }
 
 double LightSampler::density(PatchId q, const LightTree::Receiver& at, double distance, double cos_q,

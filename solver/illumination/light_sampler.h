@@ -28,6 +28,8 @@ struct LightSample {
   PatchId patch;        ///< the bright patch it lies on; invalid for other lights
   MirrorWay way;        ///< of an image
   double weight = 0;    ///< of a bright patch: irradiance = glow * weight [1]
+  std::uint32_t light = LightTree::kNone;  ///< number of a luminaire or sun, as in Layer::lights; kNone: a bright patch
+  double probability = 0;                  ///< with which that was chosen [1]
 };
 
 struct DeltaEffort {
@@ -65,6 +67,9 @@ class LightSampler {
     return can_choose(hit) ? density(hit, receiver(p, n), d, bright_patches_only) : 0;
   }
 
+  /// Probability with which sample() would choose the luminaire or sun of this number at p.
+  double probability(std::uint32_t light, const Vec3& p, const Vec3& n) const;
+
   const GlossLight& gloss() const { return gloss_; }
 
   /// Irradiance at p of luminaires and of the sun, straight and over lobes of glossy surfaces: a shadow ray to each
@@ -82,6 +87,8 @@ class LightSampler {
   LightSample on_patch(const LightTree::Receiver& at, double pick, double u, double v, double share) const;
   LightSample on_luminaire(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
   LightSample on_sun(const Vec3& p, const Vec3& n, double pick, double u, double v, double share) const;
+  /// share: of all suns together.
+  double probability_of(const PlacedSun& sun, double share) const;
 
   const Problem& problem_;
   const Field& glow_;

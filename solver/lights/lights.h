@@ -26,15 +26,17 @@ struct NearPlane {
 struct PlacedLuminaire : Luminaire {
   MirrorWay way{};                       ///< of an image: the planes (RayScene::mirrors) that show it
   std::vector<NearPlane> near_planes{};  ///< of surfaces around it; see find_near_planes()
-  double share = 1;  ///< about what is left of its light on that way; how much an image is worth looking for [1]
+  double share = 1;         ///< about what is left of its light on that way; how much an image is worth looking for [1]
+  std::uint32_t shows = 0;  ///< of an image: the luminaire, by number
 
   bool is_image() const { return !way.empty(); }
 };
 
 /// The sun, or its image.
 struct PlacedSun : Sun {
-  MirrorWay way{};   ///< as of PlacedLuminaire
-  double share = 1;  ///< as of PlacedLuminaire
+  MirrorWay way{};          ///< as of PlacedLuminaire
+  double share = 1;         ///< as of PlacedLuminaire
+  std::uint32_t shows = 0;  ///< of an image: the sun, by number among suns
 
   bool is_image() const { return !way.empty(); }
 };

@@ -5,22 +5,21 @@
 
 #include "solver/model/parallel.h"
 #include "solver/model/streams.h"
-#include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/spaces/energy.h"
 
 namespace clerestory {
 
-Solution path_trace(const Illumination& light, const DirectLight& direct, const Closure& closure,
-                    const PathOptions& options, const Monitor& monitor) {
-  const Problem& problem = light.problem;
+Solution path_trace(const Problem& problem, const PathEstimator& estimator, std::string_view name,
+                    const DirectLight& direct, const Closure& closure, const PathOptions& options,
+                    const Monitor& monitor) {
   const PatchSet& patches = problem.patches;
   const std::size_t n = patches.patch_count();
   std::vector<PathSum> sums(n);
   std::vector<unsigned long long> rays(n, 0);
 
   Solution solution;
-  solution.method = "path";
+  solution.method = name;
   constexpr int kRound = 16;
   int done = 0;
   constexpr std::size_t kBlock = 1 << 12;
@@ -40,7 +39,7 @@ Solution path_trace(const Illumination& light, const DirectLight& direct, const 
             RandomStream random(key, static_cast<std::uint64_t>(k), 1);
             const Vec3 start = problem.rays.off_surface(point_on_triangle(corners, u[2], u[3]), normal);
             const PathStart first = path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), key);
-            const Spectrum E = trace_path(light, start, normal, first, random, rays[i], asked);
+            const Spectrum E = estimator(start, normal, first, random, rays[i], asked);
             if (asked.should_stop()) return;
             sums[i].add(E);
           }

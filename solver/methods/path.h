@@ -1,9 +1,12 @@
 #pragma once
-// Path tracing as a method: every patch and point on its own, without bias. Slow, and the judge of the others.
+// Paths as a method: every patch and point on its own, without bias. Slow, and the judge of the others.
+
+#include <string_view>
 
 #include "solver/illumination/direct.h"
 #include "solver/model/monitor.h"
 #include "solver/model/solution.h"
+#include "solver/paths/path_tracer.h"
 #include "solver/spaces/closure.h"
 
 namespace clerestory {
@@ -16,8 +19,10 @@ struct PathOptions {
 /// Mean irradiance of every patch from paths that start all over it, and its standard error. Paths are added in rounds,
 /// so a run that is stopped has fewer of them everywhere.
 ///
+/// estimator        on the same patches; name: of the method that it is.
 /// direct, closure  only for the energy balance.
-Solution path_trace(const Illumination& light, const DirectLight& direct, const Closure& closure,
-                    const PathOptions& options, const Monitor& monitor = {});
+Solution path_trace(const Problem& problem, const PathEstimator& estimator, std::string_view name,
+                    const DirectLight& direct, const Closure& closure, const PathOptions& options,
+                    const Monitor& monitor = {});
 
 }  // namespace clerestory

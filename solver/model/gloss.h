@@ -47,6 +47,8 @@ class Lobe {
   /// u, v in [0, 1).
   Sample sample(const Vec3& n, const Vec3& from, double u, double v) const;
 
+  /// Gloss::specular.
+  const Spectrum& specular() const { return specular_; }
   /// Share that the lobe reflects of light from an angle of that cosine [1].
   Spectrum albedo(double cosine) const;
   /// How narrow it is: about the exponent e of a cos^e around the mirror's direction.

@@ -43,6 +43,8 @@ struct Material {
   // What a surface of this material does with light. Transport asks these, never the kind: a new kind answers them
   // here, and says in PatchSet::scattered() and PatchSet::scatter() what becomes of light that falls on it.
 
+  /// Reflects some around the mirror's direction; needs: gloss.
+  bool is_glossy() const { return kind == MaterialKind::glossy; }
   /// Its sides take light, and are patches; else rays go on from it.
   bool receives() const { return !lets_rays_pass() && !turns_rays(); }
   /// Rays go straight on, with the share that a sheet of `transmittance` passes at their angle; another is turned back.

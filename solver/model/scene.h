@@ -99,6 +99,7 @@ struct Scene {
   std::vector<NamedSurfaces> rooms;  ///< that the scene file names
   SolverSettings settings;
   std::vector<std::string> unused_materials;  ///< material rules of the scene file that matched nothing
+  std::vector<std::string> left_out;          ///< what models have that is not solved, by no mistake of theirs
   std::vector<std::string> warnings;          ///< what the reader assumed or left out, for people
   std::vector<NotRead> not_read;              ///< what readers did not use, in full
   std::optional<double> model_north_deg;      ///< true north as a model says it, clockwise from +y

@@ -83,6 +83,7 @@ enum Stream : std::uint64_t {
   kEchoes = 0x89,
   kGlossOfRay = 0x8d,
   kGlossPairs = 0x8e,
+  kGlossSeen = 0x8f,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.
   kVisibilityPattern = 0x7061747465726e,
 };

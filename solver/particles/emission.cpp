@@ -59,12 +59,6 @@ LineInBox line_in_box(const Box& box, const Vec3& p, const Vec3& d) {
   return line;
 }
 
-/// Density of direction_to_sun() [1/sr].
-double density_in_disc(const Sun& sun, const Vec3& travel) {
-  static const double sin_half = std::sin(kSunDiameterDeg / 2 * std::numbers::pi / 180);
-  return -dot(travel, sun.direction) / (std::numbers::pi * sin_half * sin_half);
-}
-
 }  // namespace
 
 struct Emission::Impl {
@@ -218,7 +212,7 @@ Emitted Emission::Impl::from_sun(std::size_t entry, const std::array<double, 4>&
   e.light = suns[k];
   e.normal = d;
   e.density_place = over_gates(through, d, first_sun + k * gates.size(), gate, [](std::size_t) { return 1.0; });
-  e.density_direction = density_in_disc(sun, d);
+  e.density_direction = density_in_disc(sun, -d);
   if (dot(d, gates[gate].normal) > 0 && e.density_place > 0) e.flux = sun.normal_irradiance / e.density_place;
   return e;
 }
@@ -305,7 +299,7 @@ double Emission::density_of_sun(std::uint32_t number, const Vec3& p, const Vec3&
   if (at == impl_->suns.end() || *at != number) return 0;
   const Lights& lights = impl_->light.problem.lights;
   const auto k = static_cast<std::size_t>(at - impl_->suns.begin());
-  return density_in_disc(lights.suns[number - lights.luminaires.size()], d) *
+  return density_in_disc(lights.suns[number - lights.luminaires.size()], -d) *
          impl_->over_gates(p, d, impl_->first_sun + k * impl_->gates.size(), Impl::kNoGate,
                            [](std::size_t) { return 1.0; });
 }

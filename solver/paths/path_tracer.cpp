@@ -7,6 +7,7 @@
 #include "solver/model/assert.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
+#include "solver/paths/way_on.h"
 #include "solver/sampling/two_estimators.h"
 #include "solver/sampling/unit_square.h"
 #include "solver/visibility/echoes.h"
@@ -30,38 +31,6 @@ namespace {
 constexpr double kSafe = 0.3;
 /// What the choice of an opening and the ray through it cost, in rays.
 constexpr unsigned kCostOfOpening = 3;
-
-/// Where a path goes on. Mostly in proportion to the cosine; where there are slits, half of the paths through one of
-/// them: others find them once in a thousand times. Either way counts by its share of both densities.
-struct WayOn {
-  Vec3 direction;
-  double density = 0;  ///< of both together [1/sr]
-  double factor = 1;   ///< of its light; 0: nowhere
-  bool by_slit = false;
-};
-
-constexpr double kBySlit = 0.5;
-
-double density_of_ways(const Illumination& light, const Vec3& p, const Vec3& n, const Vec3& d) {
-  const double cosine = dot(n, d) / std::numbers::pi;
-  return light.slits.reaches(p, n) ? (1 - kBySlit) * cosine + kBySlit * light.slits.preference(p, n, d) : cosine;
-}
-
-WayOn way_on(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 2>& square,
-             RandomStream& random) {
-  const bool has_slits = light.slits.reaches(p, n);
-  if (!has_slits || random.uniform() >= kBySlit) {
-    const Vec3 d = cosine_direction(Frame(n), square[0], square[1]);
-    const double density = density_of_ways(light, p, n, d);
-    return {d, density, has_slits ? dot(n, d) / std::numbers::pi / density : 1.0};
-  }
-  const OpeningSampler::Sample s = light.slits.sample(p, n, random.uniform(), square[0], square[1]);
-  const double cosine = dot(n, s.direction) / std::numbers::pi;
-  if (!(s.per_choice > 0) || !(cosine > 0)) return {s.direction, 0, 0, true};
-  const double density =
-      (1 - kBySlit) * cosine + kBySlit * (s.preference + light.slits.preference(p, n, s.direction, s.opening));
-  return {s.direction, density, cosine * s.per_choice * s.preference / density, true};
-}
 
 /// One shadow ray to a light chosen by u. Of light that bundle rays meet too, the share that is due to shadow rays.
 Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
@@ -104,7 +73,7 @@ Spectrum through_opening(const Illumination& light, const Vec3& p, const Vec3& n
 
 PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, std::uint64_t key) {
   const auto u = sobol4(k, key + 1), v = sobol4(k, key + 2);
-  return {direction, {u[0], u[1], u[2]}, {v[0], v[1], v[2]}};
+  return {direction, {u[0], u[1], u[2]}, {v[0], v[1], v[2]}, k, key};
 }
 
 Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
@@ -113,7 +82,8 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   const PatchSet& patches = problem.patches;
   Spectrum E(0.0), throughput(1.0);
   double through_slits = 1;  // what they leave; no reason to end a path that was sent there
-  auto [square, choice, opening] = start;
+  std::array<double, 2> square = start.direction;
+  std::array<double, 3> choice = start.light, opening = start.opening;
   constexpr unsigned kBouncesBetween = 1 << 12;  // some milliseconds
   for (unsigned bounce = 1;; ++bounce) {
     if (bounce % kBouncesBetween == 0 && monitor.should_stop()) return E;
@@ -153,7 +123,13 @@ Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& 
   }
 }
 
-Spectrum trace_replicate(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, std::size_t r,
+PathEstimator::PathEstimator(const Illumination& light)
+    : channels_(light.problem.patches.channels),
+      trace_([&light](const Vec3& p, const Vec3& n, const PathStart& start, RandomStream& random,
+                      unsigned long long& rays,
+                      const Monitor& monitor) { return trace_path(light, p, n, start, random, rays, monitor); }) {}
+
+Spectrum trace_replicate(const PathEstimator& estimator, const Vec3& p, const Vec3& n, std::uint64_t key, std::size_t r,
                          int paths, unsigned long long& rays, const Monitor& monitor) {
   CLERESTORY_ASSERT(paths, >, 0);
   const int in_each = (paths + static_cast<int>(kReplicates) - 1) / static_cast<int>(kReplicates);
@@ -162,8 +138,7 @@ Spectrum trace_replicate(const Illumination& light, const Vec3& p, const Vec3& n
   for (int k = 0; k < in_each; ++k) {
     const auto u = sobol4(static_cast<std::uint32_t>(k), replicate);
     RandomStream random(replicate, static_cast<std::uint64_t>(k));
-    sum += trace_path(light, p, n, path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), replicate), random, rays,
-                      monitor);
+    sum += estimator(p, n, path_start({u[0], u[1]}, static_cast<std::uint32_t>(k), replicate), random, rays, monitor);
   }
   return sum / in_each;
 }
@@ -175,24 +150,24 @@ PathEstimate estimate_of(std::span<const Spectrum, kReplicates> replicates) {
   return {all.mean(), all.std_error()};
 }
 
-PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
-                                  unsigned long long& rays, const Monitor& monitor) {
+PathEstimate trace_paths_at_point(const PathEstimator& estimator, const Vec3& p, const Vec3& n, std::uint64_t key,
+                                  int paths, unsigned long long& rays, const Monitor& monitor) {
   std::array<Spectrum, kReplicates> replicates;
   for (std::size_t r = 0; r < kReplicates; ++r)
-    replicates[r] = trace_replicate(light, p, n, key, r, paths, rays, monitor);
+    replicates[r] = trace_replicate(estimator, p, n, key, r, paths, rays, monitor);
   return estimate_of(replicates);
 }
 
-PointIrradiance trace_paths_at(const Illumination& light, std::size_t count, const PointOf& point_of, int paths,
+PointIrradiance trace_paths_at(const PathEstimator& estimator, std::size_t count, const PointOf& point_of, int paths,
                                std::uint64_t key, std::string_view stage, const Monitor& monitor) {
   PointIrradiance result;
-  result.E = result.std_error = Field(count, light.problem.patches.channels);
+  result.E = result.std_error = Field(count, estimator.channels());
   constexpr std::size_t kBlock = 2048;
   const Blocks blocks = parallel_blocks(count, kBlock, 16, stage, monitor, [&](std::size_t from, std::size_t to) {
     unsigned long long rays = 0;
     for (std::size_t i = from; i < to; ++i) {
       const ReceivingPoint at = point_of(i);
-      const auto [E, std_error] = trace_paths_at_point(light, at.p, at.n, stream_key(key, i), paths, rays, monitor);
+      const auto [E, std_error] = trace_paths_at_point(estimator, at.p, at.n, stream_key(key, i), paths, rays, monitor);
       result.E.set(i, E);
       result.std_error.set(i, std_error);
     }

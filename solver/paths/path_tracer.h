@@ -1,7 +1,12 @@
 #pragma once
 // One random path: the unbiased estimate that judges all other methods.
 
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include "solver/illumination/illumination.h"
 #include "solver/model/monitor.h"
@@ -30,6 +35,8 @@ struct PathStart {
   std::array<double, 2> direction;  ///< of the first ray
   std::array<double, 3> light;      ///< choice and point of the light that shines on the first point
   std::array<double, 3> opening;    ///< choice of an opening, and direction through it
+  std::uint32_t number;             ///< of the path, and the key of all of them: for those who want more
+  std::uint64_t key;
 };
 /// That of path k; directions are given, for callers that also spread the points.
 PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, std::uint64_t key);
@@ -47,22 +54,44 @@ PathStart path_start(const std::array<double, 2>& direction, std::uint32_t k, st
 Spectrum trace_path(const Illumination& light, Vec3 p, Vec3 n, const PathStart& start, RandomStream& random,
                     unsigned long long& rays, const Monitor& monitor = {});
 
+/// The same by whatever paths: trace_path() where it is made of an Illumination, which outlives it.
+class PathEstimator {
+ public:
+  using Trace = std::function<Spectrum(const Vec3& p, const Vec3& n, const PathStart& start, RandomStream& random,
+                                       unsigned long long& rays, const Monitor& monitor)>;
+
+  PathEstimator(const Illumination& light);
+  /// channels: of the patches.
+  PathEstimator(int channels, Trace trace) : channels_(channels), trace_(std::move(trace)) {}
+
+  int channels() const { return channels_; }
+
+  Spectrum operator()(const Vec3& p, const Vec3& n, const PathStart& start, RandomStream& random,
+                      unsigned long long& rays, const Monitor& monitor) const {
+    return trace_(p, n, start, random, rays, monitor);
+  }
+
+ private:
+  int channels_;
+  Trace trace_;
+};
+
 /// Irradiance at the fixed point p and its standard error, from independent replicates of stratified paths: the spread
 /// between replicates counts what stratification gains, which the spread of single paths does not.
 struct PathEstimate {
   Spectrum E, std_error;
 };
 inline constexpr std::size_t kReplicates = 8;
-PathEstimate trace_paths_at_point(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, int paths,
-                                  unsigned long long& rays, const Monitor& monitor = {});
+PathEstimate trace_paths_at_point(const PathEstimator& estimator, const Vec3& p, const Vec3& n, std::uint64_t key,
+                                  int paths, unsigned long long& rays, const Monitor& monitor = {});
 
 /// The same in parts, for a loop over them: the mean of replicate r < kReplicates, and what all of them say.
-Spectrum trace_replicate(const Illumination& light, const Vec3& p, const Vec3& n, std::uint64_t key, std::size_t r,
+Spectrum trace_replicate(const PathEstimator& estimator, const Vec3& p, const Vec3& n, std::uint64_t key, std::size_t r,
                          int paths, unsigned long long& rays, const Monitor& monitor = {});
 PathEstimate estimate_of(std::span<const Spectrum, kReplicates> replicates);
 
 /// The same at each of `count` places.
-PointIrradiance trace_paths_at(const Illumination& light, std::size_t count, const PointOf& point_of, int paths,
+PointIrradiance trace_paths_at(const PathEstimator& estimator, std::size_t count, const PointOf& point_of, int paths,
                                std::uint64_t key, std::string_view stage, const Monitor& monitor = {});
 
 }  // namespace clerestory

@@ -34,7 +34,7 @@ std::vector<LawCheck> check_laws(const Problem& problem, const Problem& unhalved
   const bool has_links = used.links.complete, has_matrix = used.matrix.complete && used.matrix.n > 0;
   if (monitor.should_stop() || !(has_links || has_matrix)) {
     const bool has_none =
-        options.method == Method::path || options.method == Method::progressive || options.method == Method::particles;
+        is_by_paths(options.method) || options.method == Method::progressive || options.method == Method::particles;
     const std::string why =
         has_none ? "the method keeps no form factors" : "the solve was stopped before its form factors were complete";
     laws = {not_checked(Law::reciprocity, why), not_checked(Law::row_sums, why)};

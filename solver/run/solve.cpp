@@ -23,6 +23,7 @@
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/triangle_size.h"
+#include "solver/paths/bidirectional.h"
 #include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/run/accuracy.h"
@@ -68,8 +69,9 @@ void require_possible(const Problem& problem, const SolveOptions& options) {
   const bool by_bf = options.method == Method::hierarchical && options.oracle == Oracle::bf;
   if (by_matrix) require_matrix_fits(problem.patches.patch_count(), matrix_options(problem.patches, options));
   if ((by_matrix || by_bf) && problem.rays.has_mirrors())
-    throw InputError("the scene has mirrors, which form factors do not see; use " +
-                     std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive, path or particles"));
+    throw InputError(
+        "the scene has mirrors, which form factors do not see; use " +
+        std::string(by_bf ? "--oracle error" : "--method hierarchical, progressive, path, bidirectional or particles"));
 }
 
 ParticleOptions particle_options(const SolveOptions& options) {
@@ -176,14 +178,25 @@ std::vector<std::uint32_t> numbers_of(const std::vector<bool>& chosen) {
   return numbers;
 }
 
+/// use(estimator), of a method by paths.
+template <class Use>
+auto with_paths(const Illumination& light, Method method, const Use& use) {
+  if (method == Method::path) return use(PathEstimator(light));
+  const Bidirectional both(light);
+  return use(both.estimator());
+}
+
 /// Irradiance at places by the method of the solution.
 PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, std::size_t count,
                               const PointOf& point_of, const GatherQuality& quality, int paths, Stream stream,
                               std::string_view stage, const SolveOptions& options, const Monitor& monitor,
                               const RowLight* layers = nullptr) {
-  if (options.method == Method::path)
-    return trace_paths_at(Illumination(problem), count, point_of, paths, stream_key(options.seed, stream), stage,
-                          monitor);
+  if (is_by_paths(options.method)) {
+    const Illumination light(problem);
+    return with_paths(light, options.method, [&](const PathEstimator& estimator) {
+      return trace_paths_at(estimator, count, point_of, paths, stream_key(options.seed, stream), stage, monitor);
+    });
+  }
   return gather_at(gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor), count,
                    point_of, GatherPattern(quality, options.seed), stage, monitor, layers);
 }
@@ -192,7 +205,7 @@ PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, 
 GatherQuality quality_until(const Monitor& monitor, const Problem& problem, const Solution& solution,
                             const Gathers& gathers, const SolveOptions& options, GatherQuality Effort::*quality) {
   const GatherQuality wanted = effort_of(options).*quality;
-  if (!monitor.has_deadline() || options.method == Method::path || gathers.count == 0) return wanted;
+  if (!monitor.has_deadline() || is_by_paths(options.method) || gathers.count == 0) return wanted;
   std::vector<GatherQuality> qualities{wanted};
   for (const GatherQuality& coarser : coarser_than(options, quality)) qualities.push_back(coarser);
   const Illumination light =
@@ -231,10 +244,14 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
     monitor.report("closure", 0);
     return measure_closure(problem, monitor.should_stop() ? kLate : e.closure_rays, options.seed);
   };
-  if (options.method == Method::path || options.method == Method::progressive) {
+  if (is_by_paths(options.method) || options.method == Method::progressive) {
     const Closure of_patches = closure();
     monitor.say_result();  // direct light, and an estimate of what follows from it
-    if (options.method == Method::path) return path_trace(light, direct, of_patches, {e.paths, options.seed}, monitor);
+    if (is_by_paths(options.method))
+      return with_paths(light, options.method, [&](const PathEstimator& estimator) {
+        return path_trace(problem, estimator, kMethodNames[static_cast<std::size_t>(options.method)], direct,
+                          of_patches, {e.paths, options.seed}, monitor);
+      });
     constexpr double kFewestRays = 64;  // a patch met by fewer is known to worse than 12 %
     Solution solution =
         shoot(problem, direct, of_patches,
@@ -262,7 +279,7 @@ double seconds_for_vertices(const Problem& problem, const Gathers& vertices, con
   constexpr double kMost = 0.4, kLonger = 1.5;  // than gathers that know of no reflected light
   if (!std::isfinite(left)) return 0;
   const auto n = static_cast<double>(vertices.count);
-  if (options.method == Method::path) return left * n / (n + static_cast<double>(problem.patches.patch_count()));
+  if (is_by_paths(options.method)) return left * n / (n + static_cast<double>(problem.patches.patch_count()));
   return std::min(kMost * left, kLonger * n * seconds_a_gather(Illumination(problem), vertices, options.seed));
 }
 

@@ -1,12 +1,15 @@
 #include "solver/view/trace_view.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/view/sample_pattern.h"
 
@@ -43,6 +46,14 @@ std::vector<std::array<std::uint32_t, 3>> corners_of_triangles(const WrittenResu
   return corners;
 }
 
+/// The same for the same sight.
+std::uint64_t key_of_sight(const Vec3& place, const Vec3& direction, int sample) {
+  std::uint64_t key = stream_key(kGlossSeen, static_cast<std::uint64_t>(sample + 1));
+  for (const double x : {place.x, place.y, place.z, direction.x, direction.y, direction.z})
+    key = mix_bits(key ^ std::bit_cast<std::uint64_t>(x)) + 1;
+  return key;
+}
+
 }  // namespace
 
 ShownField radiance_of(const WrittenResult& result) {
@@ -72,6 +83,13 @@ ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<
     const auto [at, is_new] = table_of_material.try_emplace(pane.material, static_cast<int>(glass_.size()));
     if (is_new) glass_.emplace_back(material.transmittance);
     to.table = at->second;
+  }
+  if (field_.is_radiance && std::ranges::any_of(result.materials, &Material::is_glossy)) {
+    for (const Material& material : result.materials) {
+      lobe_of_material_.push_back(material.is_glossy() ? static_cast<int>(lobes_.size()) : -1);
+      if (material.is_glossy()) lobes_.emplace_back(*material.gloss);
+    }
+    for (const std::uint32_t i : triangles) material_.push_back(result.material[i]);
   }
   const auto n = static_cast<std::size_t>(field_.channels);
   corner_values_.reserve(3 * n * triangles_.size());
@@ -104,7 +122,7 @@ class ViewScene::Tile {
           Way& way = next_way();
           way.pixel = static_cast<std::uint32_t>((y - y0) * width_ + x - x0), way.sample = static_cast<int>(k);
           way.turns = 0, way.weight = Spectrum(1.0), way.origin = ray->origin, way.direction = ray->direction;
-          way.near = 0;
+          way.near = 0, way.is_gloss = false;
           send_when(kLanes);
         }
     send_when(1);
@@ -126,6 +144,7 @@ class ViewScene::Tile {
     Spectrum weight{1.0};
     Vec3 origin, direction;  ///< of the surfaces' frame
     double near = 0;
+    bool is_gloss = false;  ///< what comes along it adds to a surface that is seen already
   };
 
   Way& next_way() { return ways_[waiting_++]; }
@@ -138,7 +157,7 @@ class ViewScene::Tile {
     scene_.surfaces_.look(packet, sights);
     for (std::size_t k = 0; k < waiting_; ++k) {
       if (sights.triangle[k] != Sights::kNothing)
-        take_surface(ways_[k], sights.triangle[k], sights.u[k], sights.v[k]);
+        take_surface(ways_[k], sights.triangle[k], sights.u[k], sights.v[k], double{sights.distance[k]});
       else if (sights.pane[k] != Sights::kNothing)
         turn(ways_[k], scene_.panes_[sights.pane[k]], double{sights.distance[k]});
       else
@@ -153,19 +172,44 @@ class ViewScene::Tile {
         std::min(way.weight[channel] * value, most);
   }
 
-  void take_surface(const Way& way, std::uint32_t triangle, float u, float v) {
+  void take_surface(const Way& way, std::uint32_t triangle, float u, float v, double t) {
     const auto n = static_cast<std::size_t>(channels_);
     const float* corner = &scene_.corner_values_[triangle * 3 * n];
     for (std::size_t k = 0; k < n; ++k)
       add(way, static_cast<int>(k), double{(1 - u - v) * corner[k] + u * corner[n + k] + v * corner[2 * n + k]});
-    seen_[way.pixel] += luminous_mean(way.weight);
+    see(way, luminous_mean(way.weight));
+    if (!scene_.lobes_.empty()) shine(way, triangle, t);
+  }
+
+  void see(const Way& way, double weight) {
+    if (!way.is_gloss) seen_[way.pixel] += weight;
+  }
+
+  /// A glossy surface shows besides what lies along one direction of its lobe.
+  void shine(const Way& way, std::uint32_t triangle, double t) {
+    const int number = scene_.lobe_of_material_[scene_.material_[triangle]];
+    if (number < 0 || way.turns >= kMostTurns) return;
+    const auto& [a, b, c] = scene_.triangles_[triangle];
+    const auto& x = scene_.result_.points;
+    const Vec3 n = normalized(cross(x[b] - x[a], x[c] - x[a])), d = normalized(way.direction);
+    const Vec3 place = way.origin + way.direction * t;
+    RandomStream random(key_of_sight(place, d, way.sample), 0);
+    const double u = random.uniform(), v = random.uniform();
+    const Lobe::Sample s = scene_.lobes_[static_cast<std::size_t>(number)].sample(n, -d, u, v);
+    if (!(s.density > 0)) return;
+    Way next = way;
+    next.weight *= s.weight;
+    if (!(luminous_mean(next.weight) >= kLeastWeight)) return;
+    next.is_gloss = true, ++next.turns;
+    next.origin = place, next.direction = s.direction, next.near = scene_.surfaces_.lift();
+    back_.push_back(next);
   }
 
   void take_sky(const Way& way) {
     if (!scene_.field_.is_radiance || !options_.sees_sky || scene_.result_.around.sky.empty()) return;
     const Spectrum L = scene_.result_.around.sky(normalized(way.direction));
     for (int k = 0; k < channels_; ++k) add(way, k, L[k]);
-    seen_[way.pixel] += luminous_mean(way.weight);
+    see(way, luminous_mean(way.weight));
   }
 
   void turn(const Way& way, const Pane& pane, double t) {
@@ -195,7 +239,7 @@ class ViewScene::Tile {
     };
     follow(on, unit, through_);
     follow(turned, back, back_);
-    seen_[way.pixel] += luminous_mean(way.weight) - followed;
+    see(way, luminous_mean(way.weight) - followed);
   }
 
   void write(int x0, int y0, int y1) {

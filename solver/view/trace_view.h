@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/model/gloss.h"
 #include "solver/model/monitor.h"
 #include "solver/model/view_image.h"
 #include "solver/model/written_result.h"
@@ -40,8 +41,8 @@ class ViewScene {
 
   /// Empty when the monitor stopped it.
   ///
-  /// Threads: same bits for any thread count. Rays are turned by mirrors and panes until less than 1 % of the light
-  /// would come that way, 16 times at most.
+  /// Threads: same bits for any thread count. Rays are turned by mirrors and panes, and by gloss, each into one
+  /// direction of its lobe, until less than 1 % of the light would come that way, 16 times at most.
   ViewImage trace(const Camera& camera, const ViewOptions& options, const Monitor& monitor = {}) const;
 
   const SeenSurfaces& surfaces() const { return surfaces_; }
@@ -63,7 +64,10 @@ class ViewScene {
   std::vector<std::uint32_t> shown_panes_;  ///< of the result
   std::vector<Pane> panes_;
   std::vector<GlassTable> glass_;
-  std::vector<float> corner_values_;  ///< 3 x channels a triangle
+  std::vector<Lobe> lobes_;              ///< of glossy materials, where light is shown
+  std::vector<int> lobe_of_material_;    ///< below 0: none; empty: there are no lobes
+  std::vector<std::uint32_t> material_;  ///< of the triangles that are shown; empty without lobes
+  std::vector<float> corner_values_;     ///< 3 x channels a triangle
   SeenSurfaces surfaces_;
 };
 

@@ -310,8 +310,8 @@ RayScene::RayScene(const PatchSet& patches) {
   if (impl->tight.any()) impl->fine.emplace(patches, impl->vertices, impl->corners, impl->diameter);
   impl_ = std::move(impl);
 }
-RayScene::RayScene(std::shared_ptr<const Impl> impl, double lift_share)
-    : impl_(std::move(impl)), lift_share_(lift_share) {}
+RayScene::RayScene(std::shared_ptr<const Impl> impl, double lift_share, bool leaves_gloss)
+    : impl_(std::move(impl)), lift_share_(lift_share), leaves_gloss_(leaves_gloss) {}
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
@@ -329,7 +329,8 @@ const Lobe* RayScene::lobe(TriangleId t, const Vec3& direction) const { return i
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }
 Vec3 RayScene::off_surface(const Vec3& p, const Vec3& n) const { return impl_->off_surface(p, n, lift_share_); }
-RayScene RayScene::with_nearer_ends() const { return {impl_, 0.5}; }
+RayScene RayScene::with_nearer_ends() const { return {impl_, 0.5, leaves_gloss_}; }
+RayScene RayScene::without_gloss() const { return {impl_, lift_share_, true}; }
 bool RayScene::has_tight_places() const { return impl_->tight.any(); }
 bool RayScene::is_tight(const Vec3& p) const { return impl_->tight.contains(p); }
 double RayScene::diameter() const { return impl_->diameter; }
@@ -393,7 +394,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       if (starts_tight || (!hit.escaped() && impl_->lands_tight(hit, sent))) {
         hit = impl_->fine_leg(patches, sent, panes);
         if (has_mirrors()) impl_->follow_mirrors(patches, sent, lift_share_, hit, panes.choice);
-        if (choice) impl_->offer_gloss(sent, hit, lift_share_, choice);
+        if (choice && !leaves_gloss_) impl_->offer_gloss(sent, hit, lift_share_, choice);
         choice.finish();
         continue;
       }
@@ -406,7 +407,7 @@ void RayScene::first_hits(const PatchSet& patches, std::span<const Ray> rays, st
       if ((by_glass >> k) & 1)
         hit.transmittance = impl_->through_glass(sent.origin, sent.direction, hit.distance, false, panes);
       if (has_mirrors()) impl_->follow_mirrors(patches, sent, lift_share_, hit, panes.choice);
-      if (choice) impl_->offer_gloss(sent, hit, lift_share_, choice);
+      if (choice && !leaves_gloss_) impl_->offer_gloss(sent, hit, lift_share_, choice);
       choice.finish();
     }
   }
@@ -418,7 +419,7 @@ Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray, Echo* echo) con
   const PanesOnLeg panes{choice ? &choice : nullptr, Spectrum(1.0), lift_share_};
   Hit hit = impl_->one_leg(patches, ray, panes);
   if (has_mirrors()) impl_->follow_mirrors(patches, ray, lift_share_, hit, panes.choice);
-  if (choice) impl_->offer_gloss(ray, hit, lift_share_, choice);
+  if (choice && !leaves_gloss_) impl_->offer_gloss(ray, hit, lift_share_, choice);
   choice.finish();
   return hit;
 }

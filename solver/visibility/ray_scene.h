@@ -123,7 +123,7 @@ class RayScene {
   bool has_glass() const;
   bool has_mirrors() const;
   bool has_gloss() const;
-  bool has_echoes() const { return has_glass() || has_gloss(); }
+  bool has_echoes() const { return has_glass() || (has_gloss() && !leaves_gloss_); }
   const GlossySides& gloss() const;
   /// Unit, of its front.
   Vec3 normal(TriangleId t) const;
@@ -146,6 +146,8 @@ class RayScene {
   /// The same surfaces for rays whose ends are lifted half as far: what a lift does to a result is seen by rays that
   /// have another. (A quarter was too near: rounding put 0.2 % of the ends behind their surface.)
   RayScene with_nearer_ends() const;
+  /// The same surfaces for those who look after lobes themselves: rays have no echo by gloss.
+  RayScene without_gloss() const;
   /// The distance by which ray ends are lifted where there is room: 5e-7 of the diagonal, a few units in the last place
   /// at the rim of the scene [m].
   double lift() const;
@@ -157,9 +159,10 @@ class RayScene {
 
  private:
   struct Impl;
-  RayScene(std::shared_ptr<const Impl> impl, double lift_share);
+  RayScene(std::shared_ptr<const Impl> impl, double lift_share, bool leaves_gloss);
   std::shared_ptr<const Impl> impl_;
   double lift_share_ = 1;
+  bool leaves_gloss_ = false;
 };
 
 }  // namespace clerestory

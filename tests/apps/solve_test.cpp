@@ -242,7 +242,7 @@ TEST(Solve, TheDebugOutputIsRefusedWhereItCannotBe) {
 }
 
 TEST(Solve, ThreadsNeverChangeABit) {
-  for (const char* method : {"hierarchical", "progressive", "gauss-seidel", "path", "particles"}) {
+  for (const char* method : {"hierarchical", "progressive", "gauss-seidel", "path", "bidirectional", "particles"}) {
     SCOPED_TRACE(method);
     const TempFolder folder;
     for (const char* threads : {"1", "2", "3"}) {

@@ -188,11 +188,39 @@ def room_cornell_mm(folder):
     write_scene(folder, "room_cornell_mm", m, {"materials": materials}, unit_name="mm")
 
 
-def room_sunpatch(folder):
+def room_tray(folder):
+    """A lamp without size in an open tray below the ceiling: the room has its light by reflection alone."""
+    def lamp(m):
+        x, y, z, w, d, h = 2.5, 2.0, 2.35, 0.4, 0.4, 0.25
+        a, b, up = (w, 0, 0), (0, d, 0), (0, 0, h)
+        m.quad("body", (x, y, z), a, b, False)
+        for o, u in (((x, y, z), a), ((x, y + d, z), a), ((x, y, z), b), ((x + w, y, z), b)):
+            m.quad("body", o, u, up, False)
+    scene = {"materials": GREY,
+             "luminaires": [{"type": "point", "position": [2.7, 2.2, 2.4], "luminous_flux": 3000}]}
+    write_scene(folder, "room_tray", room_with_blocks(lamp), scene)
+
+
+def room_mirror(folder):
+    """A shaft with a panel in its top and a mirror at its foot, which turns the light on to a wall."""
+    def lamp(m):
+        x, y, z, w, top = 2.6, 2.1, 1.9, 0.4, 0.899
+        along, up = (0, w, 0), (0, 0, top - w)
+        m.quad("body", (x, y, z + w), along, up, False)
+        m.quad("body", (x + w, y, z + w), up, along, False)
+        for side in (y, y + w):
+            m.quad("body", (x, side, z), (w, 0, 0), (0, 0, top), False)
+        m.quad("mirror", (x, y, z + w), (w, 0, -w), along, False)
+        m.quad("lamp", (x + 0.05, y + 0.05, z + top - 0.01), (0, 0.3, 0), (0.3, 0, 0), False)
+    materials = dict(GREY, mirror={"type": "mirror", "reflectance": 0.9},
+                     lamp={"reflectance": 0.5, "exitance": 10000, "sides": 1})
+    write_scene(folder, "room_mirror", room_with_blocks(lamp), {"materials": materials})
+
+
+def room_sunpatch(folder, name="room_sunpatch", hole=(3.6, 0.6, 4.1, 1.1), sky=None):
     """Closed but for a hole of 0.5 x 0.5 m in the ceiling; the sun falls on the floor between blocks and wall."""
     m = Model(5.5)
     w, d, h = ROOM
-    hole = (3.6, 0.6, 4.1, 1.1)
     sun = unit((0.35, 0.15, 1.0))
     m.quad("floor", (0, 0, 0), (w, 0, 0), (0, d, 0))
     for x0, y0, x1, y1 in ((0, 0, w, hole[1]), (0, hole[3], w, d), (0, hole[1], hole[0], hole[3]),
@@ -209,9 +237,9 @@ def room_sunpatch(folder):
     dx, dy = -sun[0] / sun[2] * h, -sun[1] / sun[2] * h
     rim = 0.03  # penumbra: half the sun's 0.533 degrees over 3 m
     patch = [hole[0] + dx - rim, hole[1] + dy - rim, hole[2] + dx + rim, hole[3] + dy + rim, 0.0]
-    write_scene(folder, "room_sunpatch", m,
-                {"materials": materials, "sun": {"direction": list(sun), "normal_illuminance": 80000}},
-                info={"sun_patch": patch})
+    scene = {"materials": materials, "sun": {"direction": list(sun), "normal_illuminance": 80000}}
+    write_scene(folder, name, m, dict(scene, **({"sky": sky} if sky else {})), info={"sun_patch": patch})
+
 
 def contacts(folder):
     """Where furniture stands: a table on four legs of 5 cm, a bed 10 cm above the floor, a bench, a cupboard 10 cm off the
@@ -362,7 +390,8 @@ def sealed(folder, name, sheet):
 
 SCENES = {
     "room_lamp": room_lamp, "room_cornell_mm": room_cornell_mm, "room_uplight": room_uplight,
-    "room_thread": room_thread, "room_sunpatch": room_sunpatch, "contacts": contacts,
+    "room_thread": room_thread, "room_sunpatch": room_sunpatch, "contacts": contacts, "room_tray": room_tray, "room_mirror": room_mirror,
+    "room_hole": lambda f: room_sunpatch(f, "room_hole", (3.6, 0.6, 3.8, 0.8), {"model": "cie-clear", "horizontal_illuminance": 10000}),
     "office_window": office("office_window", (0.5, 0.9, 3, 1.5)), "office_slit": office("office_slit", (1.5, 1.4, 1, 0.001)),
     "sealed_slab": lambda f: sealed(f, "sealed_slab", False),
     "sealed_sheet": lambda f: sealed(f, "sealed_sheet", True),

@@ -432,7 +432,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Extremes, OneFaceUnderTheSkyHasAllOfIt) {
   ModelText model;
   model.object("face", "plain").quad(flat(0, 0, 0, 1, 1));
-  for (const char* method : {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path"}) {
+  for (const char* method : {"hierarchical", "progressive", "gauss-seidel", "jacobi", "path", "bidirectional"}) {
     SCOPED_TRACE(method);
     const Outcome outcome = solve_extreme(model.text(), R"("materials": {"plain": {"reflectance": 0.5, "sides": 1}},
         "sky": {"model": "uniform", "horizontal_illuminance": 17900})",

@@ -124,7 +124,7 @@ TEST(CornellBox, HasTheSameFluxOnEverySurfaceByParticlesAndByTheHierarchy) {
 
 TEST(ParallelPlates, TheUpperPlateReceivesTheFormFactorOfTheCatalogue) {
   const TempFolder folder;
-  for (const char* method : {"progressive", "gauss-seidel", "path", "particles"}) {
+  for (const char* method : {"progressive", "gauss-seidel", "path", "bidirectional", "particles"}) {
     SCOPED_TRACE(method);
     const ResultFile result = solve(shipped_scene("parallel_plates.json"), folder, {"--method", method});
     const auto& names = result.texts.at("surface_names");

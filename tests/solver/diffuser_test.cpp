@@ -95,7 +95,7 @@ TEST_P(Diffuser, BetweenTwoRoomsKeepsTheEnergy) {
   const PatchSet patches = b.build();
   const Result r = solve_by(GetParam(), patches, {});
   EXPECT_NEAR(r.solution.energy.emitted, 100, 1e-6);
-  const bool estimate = GetParam() == Method::path || GetParam() == Method::particles;
+  const bool estimate = is_by_paths(GetParam()) || GetParam() == Method::particles;
   EXPECT_NEAR(r.solution.energy.imbalance(), 0, estimate ? 1e-2 : 1e-3);
   EXPECT_NEAR(r.solution.energy.escaped, 0, 1e-6);
   const auto [absorbed, behind] = absorbed_and_behind(r);
@@ -122,7 +122,7 @@ TEST_P(Diffuser, InsideAFurnaceIsAsBrightAsTheWalls) {
   }());
   const Result r = solve_by(GetParam(), patches, {});
   for (std::size_t i = 0; i < r.patches.patch_count(); ++i) {
-    const bool estimate = GetParam() == Method::path || GetParam() == Method::particles;
+    const bool estimate = is_by_paths(GetParam()) || GetParam() == Method::particles;
     const double tolerance = estimate ? 6 * r.solution.std_error[i][0] + 1e-9 : 1e-2;
     ASSERT_NEAR(r.solution.E[i][0], 20, tolerance) << i;
     ASSERT_NEAR(r.solution.B[i][0], 20, tolerance) << i;
@@ -131,7 +131,7 @@ TEST_P(Diffuser, InsideAFurnaceIsAsBrightAsTheWalls) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Diffuser,
                          testing::Values(Method::hierarchical, Method::progressive, Method::gauss_seidel,
-                                         Method::jacobi, Method::path, Method::particles));
+                                         Method::jacobi, Method::path, Method::bidirectional, Method::particles));
 
 TEST(DiffuserSides, TakePartTogetherWhenLightReachesOne) {
   // A box without openings, one of whose walls is a diffuser in the sky's light.

@@ -118,7 +118,7 @@ TEST_P(EveryMethod, HasOneRadianceInAFurnaceOfGloss) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                          testing::Values(Method::hierarchical, Method::progressive, Method::gauss_seidel,
-                                         Method::jacobi, Method::path, Method::particles),
+                                         Method::jacobi, Method::path, Method::bidirectional, Method::particles),
                          [](const auto& m) {
                            std::string name(kMethodNames[static_cast<std::size_t>(m.param)]);
                            std::erase(name, '-');

@@ -175,6 +175,7 @@ TEST(Mirror, LightOfARoomIsTheSameByAllMethodsAndItsEnergyIsBalanced) {
     return flux;
   };
   const double paths = flux_on_floor(Method::path, 1e-2);
+  EXPECT_NEAR(flux_on_floor(Method::bidirectional, 1e-2) / paths, 1, 0.01);
   EXPECT_NEAR(flux_on_floor(Method::progressive, 5e-3) / paths, 1, 0.01);
   EXPECT_NEAR(flux_on_floor(Method::particles, 1e-2) / paths, 1, 0.01);
   EXPECT_NEAR(flux_on_floor(Method::hierarchical, 5e-3) / paths, 1, 0.01);

@@ -176,7 +176,7 @@ TEST(Reflection, AStreetBeforeASunlitGlassFacade) {
     return from_sky(d, random);
   });
   compare(scene, spec, exact, {{"pavement", pavement}, {"house", house}},
-          {Method::progressive, Method::path, Method::particles, Method::gauss_seidel});
+          {Method::progressive, Method::path, Method::bidirectional, Method::particles, Method::gauss_seidel});
 }
 
 PhotonTracer::Photon from_lamp(const Vec3& lamp, PhotonTracer::Random& random) {
@@ -201,7 +201,7 @@ TEST(Reflection, ARoomAtNightBehindItsGlazing) {
   PhotonTracer exact = scene.tracer();
   exact.follow(4'000'000, 100, [&](PhotonTracer::Random& random) { return from_lamp(lamp, random); });
   compare(scene, spec, exact, {{"floor", 0}, {"face", face}},
-          {Method::progressive, Method::gauss_seidel, Method::path, Method::particles});
+          {Method::progressive, Method::gauss_seidel, Method::path, Method::bidirectional, Method::particles});
 }
 
 TEST(Reflection, ALiftBetweenTwoMirrors) {
@@ -221,7 +221,7 @@ TEST(Reflection, ALiftBetweenTwoMirrors) {
   PhotonTracer exact = scene.tracer();
   exact.follow(1'000'000, 100, [&](PhotonTracer::Random& random) { return from_lamp(lamp, random); });
   compare(scene, spec, exact, {{"floor", floor}, {"back", back}},
-          {Method::progressive, Method::path, Method::particles});
+          {Method::progressive, Method::path, Method::bidirectional, Method::particles});
 }
 
 /// Irradiance at p straight from lamps and suns.
@@ -361,7 +361,8 @@ TEST_P(CubeOfPanes, LightInItEndsThoughTheyLetNothingPass) {
     EXPECT_NEAR(found / expected, 1, GetParam() == Method::particles ? 2e-2 : 3e-3) << T;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes, testing::Values(Method::progressive, Method::path, Method::particles));
+INSTANTIATE_TEST_SUITE_P(Methods, CubeOfPanes,
+                         testing::Values(Method::progressive, Method::path, Method::bidirectional, Method::particles));
 
 TEST(Reflection, TheShareOfAnImageIsWhatIsLeftOnItsWay) {
   PatchBuilder b(0.0);
@@ -449,12 +450,13 @@ TEST_P(WhiteCavity, KeepsItsLightAroundAPaneThatAbsorbsNothing) {
   const Solution s = solve_on_patches({patches, rays, none}, {.method = GetParam()});
   double worst = 0;
   for (std::size_t i = 0; i < patches.patch_count(); ++i) worst = std::max(worst, std::abs(s.B[i][0] / 20 - 1));
-  EXPECT_LT(worst, GetParam() == Method::path ? 0.15 : 0.05);
+  EXPECT_LT(worst, is_by_paths(GetParam()) ? 0.15 : 0.05);
   EXPECT_NEAR(total_flux(patches, s.B) / (20 * patches.total_area()), 1, 2e-3);
   EXPECT_NEAR(s.energy.absorbed / s.energy.emitted, 1, 2e-3);
 }
 INSTANTIATE_TEST_SUITE_P(Methods, WhiteCavity,
-                         testing::Values(Method::progressive, Method::gauss_seidel, Method::path));
+                         testing::Values(Method::progressive, Method::gauss_seidel, Method::path,
+                                         Method::bidirectional));
 
 }  // namespace
 }  // namespace clerestory

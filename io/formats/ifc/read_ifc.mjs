@@ -310,6 +310,7 @@ class Reader {
     const of = {
       name: look?.name || material?.name || (glass !== undefined && !look?.transparency ? 'glass' : '') || itsOwn || (look?.colour ? `colour ${look.colour.map((v) => Math.round(255 * v)).join(' ')}` : ''),
       colour: look?.colour,
+      gloss: look?.gloss,
       transparency: look?.transparency ?? 0,
       reflectance: own('reflectance') ?? look?.reflectance,
       transmittance: look?.transmittance,

@@ -61,7 +61,7 @@ export class Styles {
     return undefined;
   }
 
-  /** { name, colour, transparency, reflectance, transmittance, textured } of a style; undefined when it has no colour. */
+  /** { name, colour, gloss, transparency, reflectance, transmittance, textured } of a style; undefined when it has no colour. */
   describe(id, depth = 0) {
     if (this.look.has(id)) return this.look.get(id);
     this.look.set(id, undefined);
@@ -86,6 +86,7 @@ export class Styles {
         const factor = idOf(part.DiffuseColour) === undefined ? numberOf(part.DiffuseColour) : undefined;
         look.colour = this.colour(idOf(part.DiffuseColour)) ?? surface?.map((v) => v * Math.min(Math.max(factor ?? 1, 0), 1));
         const transparency = numberOf(part.Transparency);
+        look.gloss = this.gloss(part, look.colour ?? surface);
         if (transparency !== undefined) look.transparency = Math.min(Math.max(transparency, 0), 1);
         break;
       }
@@ -97,6 +98,16 @@ export class Styles {
         look.textured = true;
         break;
     }
+  }
+
+  /** { specular, exponent | roughness } of a rendering; undefined when it does not say both how much and how sharp. */
+  gloss(part, colour) {
+    const factor = idOf(part.SpecularColour) === undefined ? numberOf(part.SpecularColour) : undefined;
+    const specular = this.colour(idOf(part.SpecularColour)) ?? (factor !== undefined ? colour?.map((v) => v * factor) : undefined);
+    const highlight = numberOf(part.SpecularHighlight);
+    if (!specular || highlight === undefined || !(highlight >= 0)) return undefined;
+    const isRoughness = part.SpecularHighlight?.name === 'IFCSPECULARROUGHNESS';
+    return isRoughness ? { specular, roughness: Math.min(highlight, 1) } : { specular, exponent: Math.min(highlight, 1e6) };
   }
 
   /**

@@ -192,6 +192,27 @@ TEST_F(Gltf, BlendedAndTransmittingMaterialsAreGlass) {
   EXPECT_EQ(material(passing, "pane").transmittance, Spectrum(0.9, 1, 0.8));
 }
 
+TEST_F(Gltf, GlossOfMetalsAndOthersIsTakenWhereItIsAskedForAndElseTold) {
+  const auto file = folder_.write("a.gltf", gltf(R"({ "mesh": 0 })", R"("materials": [ { "name": "brass",
+      "pbrMetallicRoughness": { "baseColorFactor": [0.8, 0.6, 0.4, 1], "metallicFactor": 0.75, "roughnessFactor": 0.3 } } ])"));
+  const Scene diffuse = read_scene(file);
+  EXPECT_FALSE(material(diffuse, "brass").gloss);
+  EXPECT_EQ(material(diffuse, "brass").reflectance, Spectrum(0.8, 0.6, 0.4));
+  ASSERT_EQ(diffuse.left_out.size(), 1u);
+  EXPECT_EQ(diffuse.left_out[0],
+            "a.gltf: gloss that the model gives to 'brass' (75 %), of the light that each reflects: it is taken as "
+            "diffuse; --gloss model follows it");
+  const Scene glossy = read_scene(file, {.gloss = "model"});
+  const Material brass = material(glossy, "brass");
+  ASSERT_TRUE(brass.is_glossy());
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(brass.reflectance[k], 0.25 * (0.8 - 0.2 * k), 1e-12);
+    EXPECT_NEAR(brass.gloss->specular[k], 0.01 + 0.75 * (0.8 - 0.2 * k), 1e-12);
+  }
+  EXPECT_EQ(brass.gloss->roughness, 0.3);
+  EXPECT_TRUE(glossy.left_out.empty());
+}
+
 TEST_F(Gltf, StripsAndFansAreTrianglesWoundAlike) {
   const Scene strip = read(gltf(R"({ "mesh": 0 })", "", "", "5"));
   EXPECT_EQ(strip.polygons.face_count(), 4u);

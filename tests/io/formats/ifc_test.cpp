@@ -115,6 +115,27 @@ TEST_F(ReadIfc, AStyleIsFoundWithAnAssignmentBetweenAndWithout) {
   }
 }
 
+TEST_F(ReadIfc, HighlightsOfStylesAreGlossWhereItIsAskedFor) {
+  for (const char* schema : {"IFC2X3", "IFC4"}) {
+    IfcText ifc({.schema = schema});
+    const std::string sharp = ifc.box({}, {1, 1, 1}), rough = ifc.box({2, 0, 0}, {1, 1, 1}),
+                      matt = ifc.box({4, 0, 0}, {1, 1, 1});
+    ifc.style("lacquer", "0.4,0.4,0.4", "0.", {sharp}, "IFCNORMALISEDRATIOMEASURE(0.25),IFCSPECULAREXPONENT(64.)");
+    ifc.style("brass", "0.4,0.4,0.2", "0.", {rough}, "IFCNORMALISEDRATIOMEASURE(0.5),IFCSPECULARROUGHNESS(0.2)");
+    ifc.style("chalk", "0.4,0.4,0.4", "0.", {matt}, "IFCNORMALISEDRATIOMEASURE(0.5),$");
+    ifc.wall("a", sharp), ifc.wall("b", rough), ifc.wall("c", matt);
+    const Scene scene = read(ifc, {.gloss = "model"});
+    ASSERT_TRUE(material(scene, "lacquer").is_glossy()) << schema;
+    EXPECT_NEAR(material(scene, "lacquer").gloss->specular[0], 0.1, 1e-12);
+    EXPECT_EQ(material(scene, "lacquer").gloss->exponent, 64);
+    ASSERT_TRUE(material(scene, "brass").is_glossy()) << schema;
+    EXPECT_NEAR(material(scene, "brass").gloss->specular[2], 0.1, 1e-12);
+    EXPECT_EQ(material(scene, "brass").gloss->roughness, 0.2);
+    EXPECT_FALSE(material(scene, "chalk").is_glossy());
+    EXPECT_FALSE(material(read(ifc), "brass").is_glossy());
+  }
+}
+
 TEST_F(ReadIfc, TessellationAndBrepsAreCutByTheirOpenings) {
   const auto area = [&](auto make) {
     IfcText ifc;

@@ -141,10 +141,11 @@ class IfcText {
     product("IFCSPACE", name, item.empty() ? "" : shape(item), "'" + long_name + "',.ELEMENT.,.INTERNAL.,$");
   }
   /// A style, and the items that have it.
+  /// gloss  SpecularColour and SpecularHighlight.
   std::string style(const std::string& name, const std::string& rgb, const std::string& transparency,
-                    std::initializer_list<std::string> items) {
+                    std::initializer_list<std::string> items, const std::string& gloss = "$,$") {
     const std::string look = add("IFCSURFACESTYLERENDERING(" + add("IFCCOLOURRGB($," + rgb + ")") + "," + transparency +
-                                 ",$,$,$,$,$,$,.NOTDEFINED.)");
+                                 ",$,$,$,$," + gloss + ",.NOTDEFINED.)");
     std::string style = add("IFCSURFACESTYLE('" + name + "',.BOTH.,(" + look + "))");
     if (is_2x3()) style = add("IFCPRESENTATIONSTYLEASSIGNMENT((" + style + "))");
     for (const std::string& item : items) add("IFCSTYLEDITEM(" + item + ",(" + style + "),$)");

@@ -155,6 +155,29 @@ TEST_F(Obj, FilesWithoutAFaceAreRefused) {
   EXPECT_NE(refused("once upon a time\n").find("a.obj: has no faces"), std::string::npos);
 }
 
+TEST_F(Obj, GlossOfTheMaterialFileIsTakenWhereItIsAskedFor) {
+  folder_.write("a.mtl",
+                "newmtl tile\nKd 0.4 0.4 0.4\nKs 0.1 0.2 0.3\nNs 80\nillum 2\n"
+                "newmtl chalk\nKd 0.4 0.4 0.4\nKs 0.5 0.5 0.5\nNs 10\nillum 1\n"
+                "newmtl white\nKd 0.9 0.9 0.9\nKs 0.6 0.6 0.6\nNs 1e9\n");
+  const auto file = folder_.write("a.obj",
+                                  "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tile\nf 1 2 3\nusemtl chalk\n"
+                                  "f 1 3 2\nusemtl white\nf 2 3 1\n");
+  const Scene diffuse = read_scene(file);
+  for (const Material& m : diffuse.materials) EXPECT_FALSE(m.is_glossy());
+  ASSERT_EQ(diffuse.left_out.size(), 1u);
+  EXPECT_NE(diffuse.left_out[0].find("'tile' (33 %), 'white' (40 %)"), std::string::npos) << diffuse.left_out[0];
+  const Scene glossy = read_scene(file, {.gloss = "model"});
+  EXPECT_EQ(material(glossy, "tile").gloss->specular, Spectrum(0.1, 0.2, 0.3));
+  EXPECT_EQ(material(glossy, "tile").gloss->exponent, 80);
+  EXPECT_EQ(material(glossy, "tile").reflectance, Spectrum(0.4));
+  EXPECT_FALSE(material(glossy, "chalk").is_glossy());
+  const Material white = material(glossy, "white");  // more than there is, in proportion
+  EXPECT_NEAR((white.reflectance + white.gloss->specular).max(), 0.99, 1e-12);
+  EXPECT_NEAR(white.gloss->specular[0] / white.reflectance[0], 0.6 / 0.9, 1e-12);
+  EXPECT_EQ(white.gloss->exponent, 1e6);
+}
+
 TEST_F(Obj, ReflectancesOfTheMaterialFileMustBeNumbers) {
   folder_.write("a.mtl", "newmtl a\nKd 0.5 red 0.5\n");
   EXPECT_EQ(refused("mtllib a.mtl\n"), "a.mtl:2: 'red' is not a number from 0 to 1e+12");

@@ -121,6 +121,39 @@ TEST_F(SceneFile, AMirrorSaysHowMuchItReflects) {
             std::string::npos);
 }
 
+TEST_F(SceneFile, AGlossySurfaceHasALobeBesideItsDiffusePart) {
+  const Material floor =
+      wood(R"({ "type": "glossy", "reflectance": 0.3, "specular": [0.1, 0.2, 0.3], "exponent": 50 })");
+  EXPECT_EQ(floor.kind, MaterialKind::glossy);
+  EXPECT_EQ(floor.reflectance, Spectrum(0.3));
+  ASSERT_TRUE(floor.gloss);
+  EXPECT_EQ(floor.gloss->specular, Spectrum(0.1, 0.2, 0.3));
+  EXPECT_EQ(floor.gloss->exponent, 50);
+  const Material metal = wood(R"({ "type": "glossy", "specular": 0.85, "roughness": 0.2, "luminance": 3 })");
+  EXPECT_EQ(metal.reflectance, Spectrum(0.0));
+  EXPECT_FALSE(metal.gloss->exponent);
+  EXPECT_EQ(metal.gloss->roughness, 0.2);
+  EXPECT_TRUE(metal.emits());
+
+  EXPECT_EQ(wood_refusal(R"({ "type": "glossy", "reflectance": 0.6, "specular": 0.5, "exponent": 5 })"),
+            "s.json: materials 'wood': reflectance + specular = 0.6 + 0.5 = 1.1 is outside [0, 1); a surface cannot "
+            "reflect more than it receives");
+  const auto refused = [&](const std::string& material, const std::string& why) {
+    EXPECT_NE(wood_refusal(material).find(why), std::string::npos) << wood_refusal(material);
+  };
+  refused(R"({ "type": "glossy", "exponent": 5 })", "specular is missing; it is what the lobe reflects");
+  refused(R"({ "type": "glossy", "specular": 1.2, "exponent": 5 })", "specular = 1.2 is outside [0, 1)");
+  refused(R"({ "type": "glossy", "specular": 0.2, "exponent": -1 })", "exponent = -1 is outside [0, 1000000]");
+  refused(R"({ "type": "glossy", "specular": 0.2, "roughness": 0 })", "roughness = 0 is outside [0.01, 1]");
+  refused(R"({ "type": "glossy", "specular": 0.2, "roughness": "nan" })", "roughness must be a number");
+  refused(R"({ "type": "glossy", "specular": 0.2 })", "give one of exponent (modified Phong, 0 or more) and roughness");
+  refused(R"({ "type": "glossy", "specular": 0.2, "exponent": 1, "roughness": 1 })", "to 1), not both");
+  refused(R"({ "type": "glossy", "specular": 0.2, "exponent": 1, "sides": 1 })", "reflects on both of its sides");
+  refused(R"({ "type": "glass", "transmittance": 0.6, "specular": 0.2 })",
+          "specular needs \"type\": \"glossy\"; glass");
+  refused(R"({ "exponent": 10 })", "exponent needs \"type\": \"glossy\"");
+}
+
 TEST_F(SceneFile, LuminairesArePointsWithTheirFluxDimmedAndGrouped) {
   const Scene scene = read_with(R"("luminaires": [
       { "type": "point", "position": [1, 2, 3], "luminous_flux": 358, "dimming": 0.5, "group": "desk", "name": "bulb" },
@@ -302,7 +335,7 @@ TEST_F(SceneFile, UnknownKeysAndNamesGetTheNearestSuggestion) {
             "s.json: materials 'wood': reflectence is not a known key; did you mean 'reflectance'?");
   EXPECT_EQ(refusal_with(R"("solver": { "method": "radiosity" })"),
             "s.json: solver.method 'radiosity' is not known; known are hierarchical, progressive, gauss-seidel, "
-            "jacobi, path, particles");
+            "jacobi, path, bidirectional, particles");
   EXPECT_EQ(refusal_with(R"("solver": { "time-limit": 3 })"),
             "s.json: solver.time-limit is not a known key; did you mean 'time_limit'?");
   EXPECT_EQ(refusal(folder_.write("s.json", R"({ "geometry": [ { "file": "room.obj", "unit": "metre" } ] })")),

@@ -193,7 +193,8 @@ TEST(Path, AgreesWithTheExactMeanWithinItsStandardError) {
   for (const double rho : {0.0, 0.5, 0.9}) {
     const Prepared room(cube(rho));
     const Illumination light(room.problem);
-    const Solution s = path_trace(light, direct_light(light, {}), measure_closure(room.problem, 64, 1), {.paths = 256});
+    const Solution s = path_trace(room.problem, light, "path", direct_light(light, {}),
+                                  measure_closure(room.problem, 64, 1), {.paths = 256});
     double variance = 0;
     for (std::size_t i = 0; i < room.patches.patch_count(); ++i)
       variance += std::pow(room.patches.area[i] * s.std_error[i][0] / room.patches.total_area(), 2);

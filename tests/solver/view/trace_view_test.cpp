@@ -91,6 +91,19 @@ TEST(TraceView, ShowsInAMirrorWhatItMirrorsTimesItsReflectance) {
   expect_all(scene_of(r, illuminance_of(r)).trace(kStraight, {}), 10, 1);
 }
 
+TEST(TraceView, ShowsOnAGlossySurfaceItsOwnLightAndWhatItsLobeMirrors) {
+  WrittenResult r = empty_result();
+  add_quad(r, turned(square_at(-50, 400)), 10, 10);  // behind the eye: all that a lobe sees
+  add_quad(r, square_at(3), 4, 4);
+  Material polished;
+  polished.kind = MaterialKind::glossy, polished.gloss = Gloss{Spectrum(0.5), {}, 0.05};
+  r.materials.push_back(polished);
+  for (std::size_t t = r.material.size() - 2; t < r.material.size(); ++t)
+    r.material[t] = static_cast<std::uint32_t>(r.materials.size() - 1);
+  expect_all(scene_of(r, radiance_of(r)).trace(kStraight, {}), 4 + 0.5 * 10, 1);
+  expect_all(scene_of(r, illuminance_of(r)).trace(kStraight, {}), 4, 1);
+}
+
 TEST(TraceView, CountsAllTurnsBetweenTwoMirrors) {
   // From between two mirrors straight into one: nothing but mirrors, ever darker, and in the end nothing.
   WrittenResult r = empty_result();

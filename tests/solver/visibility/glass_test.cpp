@@ -182,7 +182,8 @@ TEST_P(PaneInABox, TakesWhatItDoesNotPass) {
   EXPECT_NEAR(s.energy.imbalance(), 0, GetParam() == Method::progressive ? 1e-9 : 5e-3);
 }
 INSTANTIATE_TEST_SUITE_P(Methods, PaneInABox,
-                         testing::Values(Method::progressive, Method::gauss_seidel, Method::path, Method::particles));
+                         testing::Values(Method::progressive, Method::gauss_seidel, Method::path, Method::bidirectional,
+                                         Method::particles));
 
 class GlazedOpening : public testing::TestWithParam<const char*> {};
 

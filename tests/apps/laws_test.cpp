@@ -31,7 +31,7 @@ Checked check(const TempFolder& folder, const std::string& scene, std::vector<st
 
 TEST(CheckLaws, HoldInEachRoomAndAreReportedByRoom) {
   const TempFolder folder;
-  for (const std::string method : {"hierarchical", "gauss-seidel", "progressive", "path"}) {
+  for (const std::string method : {"hierarchical", "gauss-seidel", "progressive", "path", "particles"}) {
     SCOPED_TRACE(method);
     const Checked c = check(folder, shipped_scene("furnace.json"), {"--check", "--method", method});
     EXPECT_EQ(c.run.exit_code, 0) << c.run.err;

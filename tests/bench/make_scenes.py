@@ -201,20 +201,25 @@ def room_tray(folder):
     write_scene(folder, "room_tray", room_with_blocks(lamp), scene)
 
 
+SPOT = """IESNA:LM-63-2002
+[TEST] a beam of 3 degrees
+TILT=NONE
+1 1000 1 4 1 1 2 0 0 0 1 1 100
+0 3 3.5 90
+0
+50000 50000 0 0
+"""
+
+
 def room_mirror(folder):
-    """A shaft with a panel in its top and a mirror at its foot, which turns the light on to a wall."""
-    def lamp(m):
-        x, y, z, w, top = 2.6, 2.1, 1.9, 0.4, 0.899
-        along, up = (0, w, 0), (0, 0, top - w)
-        m.quad("body", (x, y, z + w), along, up, False)
-        m.quad("body", (x + w, y, z + w), up, along, False)
-        for side in (y, y + w):
-            m.quad("body", (x, side, z), (w, 0, 0), (0, 0, top), False)
-        m.quad("mirror", (x, y, z + w), (w, 0, -w), along, False)
-        m.quad("lamp", (x + 0.05, y + 0.05, z + top - 0.01), (0, 0.3, 0), (0.3, 0, 0), False)
-    materials = dict(GREY, mirror={"type": "mirror", "reflectance": 0.9},
-                     lamp={"reflectance": 0.5, "exitance": 10000, "sides": 1})
-    write_scene(folder, "room_mirror", room_with_blocks(lamp), {"materials": materials})
+    """A narrow beam on a mirror, which turns it on to a wall."""
+    def mirror(m):
+        m.quad("mirror", (2.55, 2.1, 1.15), (0.3, 0, -0.3), (0, 0.3, 0), False)
+    with open(os.path.join(folder, "spot.ies"), "w") as out:
+        out.write(SPOT)
+    scene = {"materials": dict(GREY, mirror={"type": "mirror", "reflectance": 0.9}),
+             "luminaires": [{"file": "spot.ies", "position": [2.7, 2.25, 2.7], "aim": [0, 0, -1]}]}
+    write_scene(folder, "room_mirror", room_with_blocks(mirror), scene)
 
 
 def room_sunpatch(folder, name="room_sunpatch", hole=(3.6, 0.6, 4.1, 1.1), sky=None):

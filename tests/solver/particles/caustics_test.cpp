@@ -51,8 +51,8 @@ TEST(Caustic, OfACylinderIsTheNephroidOfTheClosedForm) {
   const double all = per_angle * 2 * std::sin(kEnd) * kHeight;
   EXPECT_NEAR(flux_of(landings), all, 0.003 * all);  // 300,000 particles of strata
 
-  // Flux by squares of 0.05 m; those that the edge of the light or the bright line crosses are left out: there the sun's
-  // diameter counts.
+  // Flux by squares of 0.05 m; those that the edge of the light or the bright line crosses are left out: there the
+  // sun's diameter counts.
   constexpr int kSquares = 24, kGrid = 2000;
   constexpr double kSide = 0.05;
   const auto square = [](double x, double y) {

@@ -158,9 +158,9 @@ std::vector<Material> materials_of(const Tables& tables, const WrittenResult& re
     materials[i].reflectance = {rho[3 * i], rho[3 * i + 1], rho[3 * i + 2]};
     materials[i].transmittance = {tau[3 * i], tau[3 * i + 1], tau[3 * i + 2]};
     if (materials[i].kind != MaterialKind::glossy) continue;
-    const bool is_lobe = has_gloss &&
-                         std::all_of(&gloss[5 * i], &gloss[5 * i] + 3, [](double x) { return x >= 0 && x < 1; }) &&
-                         gloss[5 * i + 4] > 0 && gloss[5 * i + 4] <= 1 && gloss[5 * i + 3] <= 1e6;
+    const bool is_lobe =
+        has_gloss && std::all_of(&gloss[5 * i], &gloss[5 * i] + 3, [](double x) { return x >= 0 && x < 1; }) &&
+        gloss[5 * i + 4] >= kLeastRoughness && gloss[5 * i + 4] <= 1 && gloss[5 * i + 3] <= kMostExponent;
     if (!is_lobe)
       refuse(file,
              text("its material '", quotable(at->second[i]), "' is glossy, and has no lobe that a surface can have"));

@@ -37,10 +37,10 @@ void check_material(const Scene& scene, const Material& m) {
   if (m.gloss) {
     check(m.gloss->specular, "specular", false);
     check(m.reflectance + m.gloss->specular, "reflectance + specular", false);
-    if (m.gloss->exponent && !(*m.gloss->exponent >= 0 && std::isfinite(*m.gloss->exponent)))
-      refuse(scene, name + "exponent = " + rounded(*m.gloss->exponent) + "; it is 0 or more.");
-    if (!m.gloss->exponent && !(m.gloss->roughness > 0 && m.gloss->roughness <= 1))
-      refuse(scene, name + "roughness = " + rounded(m.gloss->roughness) + " is outside (0, 1].");
+    if (m.gloss->exponent && !(*m.gloss->exponent >= 0 && *m.gloss->exponent <= kMostExponent))
+      refuse(scene, name + "exponent = " + rounded(*m.gloss->exponent) + " is outside [0, 1000000].");
+    if (!m.gloss->exponent && !(m.gloss->roughness >= kLeastRoughness && m.gloss->roughness <= 1))
+      refuse(scene, name + "roughness = " + rounded(m.gloss->roughness) + " is outside [0.01, 1].");
     if (m.sides != 2) refuse(scene, name + "sides = 1; a glossy surface reflects on both of its sides.");
   }
   if (!is_light(m.exitance))

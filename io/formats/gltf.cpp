@@ -77,7 +77,9 @@ ModelMaterial read_material(const GltfFile& file, const Json& json, std::size_t 
       to.material.transmittance[k] = std::min(1.0, passes * to.material.reflectance[k]);
     to.material.exitance = Spectrum(0.0);
   }
-  if (old_style.empty()) {
+  // Where neither is said glTF means a rough metal, and nobody does; what a texture says of them is not read.
+  if (old_style.empty() && (base.contains("metallicFactor") || base.contains("roughnessFactor")) &&
+      !base.contains("metallicRoughnessTexture")) {
     // 0.04 is what glTF takes for all that is no metal; its roughness is that of a lobe.
     constexpr double kDielectric = 0.04;
     const auto share = [&](const char* key) { return std::clamp(finite_number(file, base, key, 1, where), 0.0, 1.0); };

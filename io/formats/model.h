@@ -19,8 +19,6 @@ struct ModelTexture {
   std::string bytes;           ///< of an image inside of the model
 };
 
-/// A material as the model has it, and what was assumed about it; the assumptions matter only where the scene file
-/// says nothing of the material.
 /// What a model says of the gloss of a material: specular = of_all + of_colour x its colour, of which the rest is
 /// diffuse.
 struct ModelGloss {
@@ -30,6 +28,8 @@ struct ModelGloss {
   double roughness = 1;
 };
 
+/// A material as the model has it, and what was assumed about it; the assumptions matter only where the scene file
+/// says nothing of the material.
 struct ModelMaterial {
   Material material;
   std::optional<ModelGloss> gloss{};

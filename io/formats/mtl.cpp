@@ -33,6 +33,15 @@ std::optional<Spectrum> read_colour(std::string_view rest, const std::string& wh
   return colour;
 }
 
+/// What is no colour is none: few ask for gloss, and nobody shall lose a model for it.
+Spectrum colour_of_gloss(std::string_view rest, const std::string& where) {
+  try {
+    return read_colour(rest, where).value_or(Spectrum(0.0));
+  } catch (const InputError&) {
+    return Spectrum(0.0);
+  }
+}
+
 /// By a keyword in lower case.
 bool names_texture(std::string_view key) {
   return key.starts_with("map_") || key == "bump" || key == "disp" || key == "decal" || key == "refl" || key == "norm";
@@ -89,7 +98,6 @@ std::vector<ModelMaterial> MtlReader::read(const std::filesystem::path& file) {
   std::vector<double> opacity, dissolve;  // of each material; dissolve -1: not given
   std::vector<ModelGloss> gloss;          // of each; one without an exponent is none
   std::vector<bool> has_highlight;        // illum 0 and 1 have none
-  constexpr double kSharpest = 1e6;
   std::size_t line_number = 0;
   for (std::string_view lines = text_bytes(bytes, name); !lines.empty();) {
     std::string_view rest = trimmed(next_line(lines));
@@ -109,19 +117,18 @@ std::vector<ModelMaterial> MtlReader::read(const std::filesystem::path& file) {
       continue;
     }
     if (materials.empty()) {
-      if (key == "Kd" || key == "Ke" || key == "Ks")
-        throw InputError(text(where, key, " stands before the first newmtl"));
+      if (key == "Kd" || key == "Ke") throw InputError(text(where, key, " stands before the first newmtl"));
       continue;
     }
     ModelMaterial& current = materials.back();
     Material& material = current.material;
     if (key == "Ks") {
-      if (const auto colour = read_colour(rest, where)) gloss.back().of_all = *colour;
+      gloss.back().of_all = colour_of_gloss(rest, where);
     } else if (key == "Ns" || key == "illum") {
       const auto value = to_number(next_word(rest));
       if (!value || !(*value >= 0)) continue;  // of no weight unless gloss is asked for
       if (key == "Ns")
-        gloss.back().exponent = std::min(*value, kSharpest);
+        gloss.back().exponent = std::min(*value, kMostExponent);
       else
         has_highlight.back() = *value >= 2;
     } else if (key == "Kd" || key == "Ke") {

@@ -15,9 +15,9 @@ constexpr Range kReflectance{
 constexpr Range kTransmittance{.low = 0, .high = 1, .advice = "a sheet cannot pass more than it receives"};
 constexpr Range kSpecular{
     .low = 0, .high = 1, .high_allowed = false, .advice = "a lobe cannot reflect more than it receives"};
-constexpr Range kExponent{.low = 0, .high = 1e6, .advice = "10 is satin, 1000 nearly a mirror"};
+constexpr Range kExponent{.low = 0, .high = kMostExponent, .advice = "10 is satin, 1000 nearly a mirror"};
 constexpr Range kRoughness{
-    .low = 0.01, .high = 1, .advice = "0.1 is polished, 0.5 satin; for a mirror write \"type\": \"mirror\""};
+    .low = kLeastRoughness, .high = 1, .advice = "0.1 is polished, 0.5 satin; for a mirror write \"type\": \"mirror\""};
 constexpr Range kEmission{
     .low = 0, .high = kMostLight, .advice = "a surface emits no less than nothing and no more than a result can hold"};
 

@@ -48,15 +48,14 @@ void OwnMaterials::settle_gloss(const ModelGloss& gloss, Material& material) {
     if (share > 0) matt_.add(material.name, text("(", share, " %)"));
     return;
   }
-  constexpr double kSmoothest = 0.01;
   const double fits = std::min(1.0, kWhitestReflectance / all.max());
+  if (fits < 1) too_glossy_.add(material.name, text("(", all.max(), ")"));
   material.kind = MaterialKind::glossy;
   material.reflectance = diffuse * fits;
-  material.gloss = Gloss{specular * fits, gloss.exponent, std::max(gloss.roughness, kSmoothest)};
+  material.gloss = Gloss{specular * fits, gloss.exponent, std::max(gloss.roughness, kLeastRoughness)};
 }
 
 std::string OwnMaterials::gloss_left_out() const {
-  if (matt_.empty()) return {};
   return text("gloss that the model gives to ", matt_.str(),
               ", of the light that each reflects: it is taken as diffuse; --gloss model follows it");
 }
@@ -69,6 +68,9 @@ std::vector<std::string> OwnMaterials::warnings() const {
   if (!white_.empty()) {
     lines.push_back(text("reflectance 1 or more is taken as ", kWhitestReflectance, " for ", white_.str()));
   }
+  if (!too_glossy_.empty())
+    lines.push_back(text("diffuse and glossy reflectance together are more than ", kWhitestReflectance,
+                         " and brought down to it in proportion for ", too_glossy_.str()));
   if (!textured_.empty()) lines.push_back(textured_.str());
   if (!unread_.empty()) {
     lines.push_back(text("textures that cannot be read, so that the plain colour counts, or 0.5 where that is white: ",

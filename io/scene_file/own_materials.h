@@ -34,14 +34,15 @@ class OwnMaterials {
   Material settle(const ModelMaterial& own);
   /// One line for each kind of assumption.
   std::vector<std::string> warnings() const;
-  /// Which gloss was left out, and how much of the reflected light it is; empty: none.
+  bool leaves_gloss_out() const { return !matt_.empty(); }
+  /// Of which materials, and how much of the light that they reflect it is.
   std::string gloss_left_out() const;
 
  private:
   void settle_gloss(const ModelGloss& gloss, Material& material);
 
   bool takes_gloss_;
-  NameList undescribed_, white_, textured_, unread_, glass_, glowing_, matt_;
+  NameList undescribed_, white_, textured_, unread_, glass_, glowing_, matt_, too_glossy_;
 };
 
 }  // namespace clerestory

@@ -56,8 +56,9 @@ std::vector<MaterialId> add_materials(Scene& scene, ModelsInScene& before, const
     scene.materials.push_back(std::move(material));
   }
   for (const std::string& warning : own.warnings()) warn_once(scene, before, short_name(file) + ": " + warning);
-  if (const std::string gloss = own.gloss_left_out(); !gloss.empty())
-    scene.left_out.push_back(short_name(file) + ": " + gloss);
+  if (const std::string gloss = short_name(file) + ": " + own.gloss_left_out();
+      own.leaves_gloss_out() && before.warnings.insert(gloss).second)
+    scene.left_out.push_back(gloss);
   return id;
 }
 

@@ -129,7 +129,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   if (lights.empty()) return direct;
 
   const std::vector<Beam> beams = beams_of(lights);
-  std::vector<double> daylight(n), sent_on(n);  // [W] of each patch; by gloss, which is said to have absorbed it
+  std::vector<double> daylight(n);  // [W] of each patch
   const bool has_openings = !lights.sky_openings().empty();
   std::vector<std::vector<std::uint32_t>> looked_at(has_openings ? n : 0);
   if (has_openings) direct.E_openings = Field(n, problem.patches.channels);
@@ -138,7 +138,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     LightRow* row = rows ? &row_of_patch[i] : nullptr;
     if (row) row->clear();
     const DeltaIrradiance delta = delta_light_of_patch(problem, light.sampler.gloss(), beams, i, spend, row);
-    Spectrum sky = delta.suns;
+    Spectrum sky = delta.suns + delta.by_gloss.suns;
     if (has_openings) {
       const std::uint32_t same = round && round->before && !row ? round->number[i] : PatchesOfRound::kNew;
       Spectrum through;
@@ -156,14 +156,16 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     }
     if (!light.sky.dark() && spend.sky_rays > 0)
       sky += from_sky(light, i, spend, has_openings ? looked_at[i] : std::vector<std::uint32_t>{}, row);
-    direct.E.set(i, delta.luminaires + delta.by_gloss.sum() + sky);
-    sent_on[i] = luminous_mean(delta.by_gloss.suns) * problem.patches.area[i];
+    direct.E.set(i, delta.luminaires + delta.by_gloss.luminaires + sky);
     daylight[i] = luminous_mean(sky) * problem.patches.area[i];
   };
   if (options.rough_first && monitor.has_deadline()) {
     // Time may run out below: no patch shall stay dark for that.
-    const DirectOptions rough{
-        .shadow_rays = 16, .edge_rays = 16, .sky_rays = std::min(16, options.sky_rays), .seed = options.seed};
+    const DirectOptions rough{.shadow_rays = 16,
+                              .gloss_rays = 4,
+                              .edge_rays = 16,
+                              .sky_rays = std::min(16, options.sky_rays),
+                              .seed = options.seed};
     parallel_for(n, 32, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) light_patch(i, rough);
     });
@@ -176,7 +178,6 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     });
   }
   for (const double flux : daylight) direct.energy.emitted += flux;
-  for (const double flux : sent_on) direct.energy.absorbed -= flux;
   if (has_openings) {
     direct.openings.begin.push_back(0);
     for (const auto& numbers : looked_at) {
@@ -187,6 +188,8 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
   }
   CLERESTORY_ASSERT(all_finite(direct.E), ==, true);
   direct.rays += n * static_cast<std::size_t>(options.shadow_rays) * (lights.luminaires.size() + lights.suns.size());
+  if (!light.sampler.gloss().empty())
+    direct.rays += n * static_cast<std::size_t>(options.gloss_rays) * GlossLight::kRaysOfPair;
   if (!light.sky.dark()) direct.rays += n * static_cast<std::size_t>(options.sky_rays);
   balance_luminaires(problem, beams, direct, options, rows);
   if (rows) keep(problem, row_of_patch, *rows);

@@ -63,7 +63,7 @@ class GlossLight::Look {
     if (const auto place = place_of(ray, hit)) {
       const LightTree::Choice choice = all_.lights_.choose(place->x, place->n, u[0][2]);
       if (choice.probability > 0) {
-        const Vec3 point = point_of(choice.light, p_, u[1][0], u[1][1]);
+        const Vec3 point = point_of(choice.light, u[1][0], u[1][1]);
         const double other = hit.reflected ? 0 : density_by_image(*place, choice.light, point, ray.direction);
         const double cosine = dot(n_, ray.direction), own = cosine / kPi * choice.probability;
         take(*place, choice.light, point, hit.transmittance * (cosine / (own + other)));
@@ -76,8 +76,7 @@ class GlossLight::Look {
       const LightTree::Choice choice = all_.lights_.choose(place->x, place->n, random.uniform());
       const double s = random.uniform(), t = random.uniform();
       if (choice.probability > 0)
-        take(*place, choice.light, point_of(choice.light, place->x, s, t),
-             behind.transmittance * (kPi / choice.probability));
+        take(*place, choice.light, point_of(choice.light, s, t), behind.transmittance * (kPi / choice.probability));
     });
   }
 
@@ -85,7 +84,7 @@ class GlossLight::Look {
     const LightTree::Choice choice = all_.images_.choose(p_, n_, u[1][2]);
     if (!(choice.probability > 0)) return;
     const Image image = all_.image(choice.light);
-    const Vec3 point = point_of(image.light, p_, u[2][2], u[2][3]);
+    const Vec3 point = point_of(image.light, u[2][2], u[2][3]);
     const auto cone = cone_of(image, point);
     if (!cone) return;
     const Ray ray{p_, cone->direction(u[2][0], u[2][1])};
@@ -106,16 +105,19 @@ class GlossLight::Look {
     const Lobe* lobe = rays_.lobe(hit.triangle, d);
     if (!lobe) return {};
     const Vec3 front = rays_.normal(hit.triangle), n = dot(front, d) < 0 ? front : -front;
-    return Place{rays_.off_surface(hit.position(ray), n), n, -d, lobe, rays_.gloss().plane(hit.triangle)};
+    const Vec3 x = rays_.off_surface(rays_.in_plane_of(hit.triangle, hit.position(ray)), n);
+    return Place{x, n, -d, lobe, rays_.gloss().plane(hit.triangle)};
   }
 
   const std::vector<PlacedLuminaire>& luminaires() const { return problem_.lights.luminaires; }
   bool is_sun(std::uint32_t light) const { return light >= luminaires().size(); }
   const PlacedSun& sun(std::uint32_t light) const { return problem_.lights.suns[light - luminaires().size()]; }
 
-  /// Where its light for x comes from: of a luminaire the place, of a sun the direction to it.
-  Vec3 point_of(std::uint32_t light, const Vec3& x, double u, double v) const {
-    return is_sun(light) ? direction_to_sun(sun(light), u, v) : light_point(luminaires()[light], x, u, v);
+  /// Where its light comes from: of a luminaire the place, of a sun the direction to it.
+  Vec3 point_of(std::uint32_t light, double u, double v) const {
+    if (is_sun(light)) return direction_to_sun(sun(light), u, v);
+    const PlacedLuminaire& luminaire = luminaires()[light];
+    return light_point(luminaire, luminaire.position, u, v);  // a glossy place may be near it and the receiver far
   }
 
   /// Of at_an_image() that a ray goes along d, the light being that one and its light coming from `point`.

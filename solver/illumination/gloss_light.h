@@ -23,9 +23,10 @@ struct GlossIrradiance {
 /// the plane of a glossy surface shows the image of a light, as narrow as the lobe is from there. Where either ends on
 /// a glossy surface, a light is chosen for a shadow ray from that place, and counts by the lobe's value:
 ///   E = integral over the directions d of cos(d) L(d),   L = f(from the light, to the receiver) E_light at the place
-/// The first kind also follows what panes turn back and lobes send on, to glossy surfaces behind. Unbiased at any
-/// sharpness. Lobes of more than 64 planes, curved surfaces among them, are found by the first kind alone: the
-/// narrower they are, the noisier.
+/// The first kind also follows what panes turn back and lobes send on, to glossy surfaces behind. Both are unbiased;
+/// but what the first finds alone is the noisier the narrower the lobe, and of one narrower than its rays can tell
+/// nothing is found in practice: gloss behind gloss, mirrors or panes, and gloss in more than 64 planes, curved
+/// surfaces among them.
 class GlossLight {
  public:
   /// problem  outlives this.

@@ -374,12 +374,13 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
   const Lights dark;
   const Closure closure = measure_closure({patches, rays, dark}, kRaysForClosure, options.seed);
   F.rays += closure.rays;
+  F.has_gloss = closure.has_gloss;
   for (std::size_t i = 0; i < n; ++i) {
     bool all_arrives = true;
     for (int k = 0; k < closure.arrives.channels; ++k) all_arrives &= closure.arrives.at(i, k) > 1 - 1e-9;
     const double lost = 1 - luminous_mean(closure.arrives[i]), escaped = luminous_mean(closure.escapes[i]);
     if (lost > 0) F.escapes[i] = std::clamp(escaped / lost, 0.0, 1.0);
-    if (closure.has_gloss && lost != 0) F.escapes[i] = escaped / lost;  // what lobes send on is less than lost
+    if (closure.has_gloss) F.escapes[i] = escaped;
     F.closed[i] = all_arrives && std::abs(F.raw_row_sum[i] - 1) <= 6 * F.row_error[i];
   }
   if (options.close_rows) {

@@ -31,7 +31,9 @@ struct FormFactorMatrix {
   std::vector<bool> closed;         ///< n, all that leaves the patch arrives somewhere: the true row sum is 1
   bool complete = true;             ///< false when the monitor stopped the work: unfinished factors are 0
   std::vector<bool> row_filled;     ///< n, no factor of the row is missing: row_sum says what escapes
-  std::vector<double> escapes;      ///< n, of what reaches no patch: the share that leaves the scene, not into glass
+  std::vector<double> escapes;      ///< n, of what reaches no patch: the share that leaves the scene, not into glass;
+                                    ///< with gloss, whose rows sum to more than 1, of all that is sent
+  bool has_gloss = false;
   std::size_t pairs_unblocked = 0;  ///< pairs that face each other, nothing in their shaft
   std::size_t pairs_sampled = 0;    ///< pairs whose visibility was sampled by rays
   unsigned long long rays = 0;

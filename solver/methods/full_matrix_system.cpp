@@ -139,7 +139,8 @@ Losses FullMatrixSystem::losses_of(std::size_t i) const {
   if (!F_.row_filled[i]) return {};
   // Below 0 where an open row sums to more than 1: the light it makes.
   const double unplaced = 1 - F_.row_sum[i] * F_.row_gain(i);
-  return {Spectrum(unplaced * F_.escapes[i]), Spectrum(unplaced * (1 - F_.escapes[i]))};
+  const double escapes = F_.has_gloss ? F_.escapes[i] : unplaced * F_.escapes[i];
+  return {Spectrum(escapes), Spectrum(unplaced - escapes)};
 }
 
 Solution FullMatrixSystem::finish(std::string method) const {

@@ -40,12 +40,13 @@ class BatchSums {
     for (double& x : mean.value) x /= std::max(1.0, batches_);
     return mean;
   }
+  /// One batch knows no spread: its value may be all wrong.
   Field std_error() const {
     Field error = sum_;
     for (std::size_t i = 0; i < error.value.size(); ++i) {
       const double m = sum_.value[i] / std::max(1.0, batches_);
       error.value[i] =
-          batches_ < 2 ? 0 : std::sqrt(std::max(0.0, (squares_.value[i] / batches_ - m * m) / (batches_ - 1)));
+          batches_ < 2 ? m : std::sqrt(std::max(0.0, (squares_.value[i] / batches_ - m * m) / (batches_ - 1)));
     }
     return error;
   }

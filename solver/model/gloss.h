@@ -10,11 +10,14 @@
 
 namespace clerestory {
 
+/// What double tells from a mirror.
+inline constexpr double kMostExponent = 1e6, kLeastRoughness = 0.01;
+
 /// As a scene gives it.
 struct Gloss {
   Spectrum specular{0.0};            ///< albedo of the lobe at normal incidence [1]
-  std::optional<double> exponent{};  ///< of modified Phong, >= 0
-  double roughness = 0.3;            ///< of GGX, where there is no exponent: alpha is its square; in (0, 1]
+  std::optional<double> exponent{};  ///< of modified Phong, in [0, kMostExponent]
+  double roughness = 0.3;  ///< of GGX, where there is no exponent: alpha is its square; in [kLeastRoughness, 1]
 
   friend bool operator==(const Gloss&, const Gloss&) = default;
 };

@@ -48,7 +48,8 @@ void follow_echo(const RayScene& rays, const PatchSet& patches, const Echo& firs
 
 /// Instead of a ray's hit and its echoes: one of them, the way that the light of one ray takes. It keeps what the hit
 /// of its kind has on the mean. Once turned it ends by roulette with what glass took for its chance, so that it leaves
-/// glass that lets nothing pass: with a black hit without a patch.
+/// glass that lets nothing pass: with a black hit without a patch. A lobe is weighed against what the surface scatters
+/// and no more, or ways from lobe to lobe would grow without bound.
 inline Hit one_way(const RayScene& rays, const PatchSet& patches, const Ray& ray, RandomStream& random) {
   Echo echo;
   Hit hit = rays.first_hit(patches, ray, &echo);
@@ -56,7 +57,12 @@ inline Hit one_way(const RayScene& rays, const PatchSet& patches, const Ray& ray
   Spectrum share(1.0);
   Ray leg = ray;
   for (bool turned = false;; turned = true) {
-    const double on = luminous_mean(hit.transmittance), back = luminous_mean(echo.share);
+    constexpr double kLeastAlbedo = 0.1;  // what lands on a metal is asked for, too
+    const double on = luminous_mean(hit.transmittance) *
+                      (echo.by_gloss && hit.patch.valid()
+                           ? std::max(kLeastAlbedo, luminous_mean(patches.albedo(hit.patch)))
+                           : 1.0),
+                 back = luminous_mean(echo.share);
     const bool goes_on = echo.is_none() || (random.uniform() * (on + back) >= back && on > 0);
     if (goes_on) {
       hit.transmittance *= share * (echo.is_none() ? 1.0 : (on + back) / on);

@@ -150,6 +150,11 @@ struct RayScene::Impl {
     }
   }
 
+  Vec3 in_plane_of(TriangleId t, const Vec3& x) const {
+    const Vec3 n = unit_normal(t);
+    return x - n * dot(n, x - corner(t, 0));
+  }
+
   const Lobe* lobe(TriangleId t, const Vec3& direction) const {
     if (glossy.empty() || !t.valid()) return nullptr;
     return glossy.lobe(t, dot(unit_normal(t), direction) < 0 ? kFront : kBack);
@@ -165,7 +170,7 @@ struct RayScene::Impl {
     const double u = random.uniform(), v = random.uniform();
     const Lobe::Sample s = at->sample(n, -direction, u, v);
     if (!(s.density > 0)) return;
-    const Vec3 met = hit.position(first), x = met - n * dot(n, met - corner(hit.triangle, 0));
+    const Vec3 x = in_plane_of(hit.triangle, hit.position(first));
     choice.offer({kNoPlane, hit.transmittance * s.weight, {off_surface(x, n, share), s.direction}, true});
   }
 
@@ -325,6 +330,7 @@ std::uint32_t RayScene::plane_of(TriangleId t) const {
 bool RayScene::has_gloss() const { return !impl_->glossy.empty(); }
 const GlossySides& RayScene::gloss() const { return impl_->glossy; }
 Vec3 RayScene::normal(TriangleId t) const { return impl_->unit_normal(t); }
+Vec3 RayScene::in_plane_of(TriangleId t, const Vec3& x) const { return impl_->in_plane_of(t, x); }
 const Lobe* RayScene::lobe(TriangleId t, const Vec3& direction) const { return impl_->lobe(t, direction); }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }

@@ -127,6 +127,8 @@ class RayScene {
   const GlossySides& gloss() const;
   /// Unit, of its front.
   Vec3 normal(TriangleId t) const;
+  /// The place of its plane that x is nearest to: rays in float hit it only nearly.
+  Vec3 in_plane_of(TriangleId t, const Vec3& x) const;
   /// Of the side that a ray along `direction` (unit) met in t; null: that is not glossy.
   const Lobe* lobe(TriangleId t, const Vec3& direction) const;
   /// The planes of mirrors, no more than 64 of them, then those of glass, the 64 of largest area: rays are reflected by

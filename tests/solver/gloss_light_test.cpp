@@ -125,6 +125,21 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                            return name;
                          });
 
+TEST(Gloss, PathsFromMetalToMetalHaveAnHonestSpread) {
+  // Most light goes over a lobe, many times: E = M / (1 - rho - specular), 50 times what is emitted.
+  const PatchSet patches = PatchBuilder(0)
+                               .glossy(0.03, ggx(0.95, 0.4), 100)
+                               .box({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2.5}, {1, 1, 1}, true)
+                               .build();
+  const RayScene rays(patches);
+  const Lights lights;
+  const Problem problem{patches, rays, lights};
+  unsigned long long count = 0;
+  const PathEstimate E = trace_paths_at_point(Illumination(problem), {1, 1, 1}, {0, 0, 1}, 5, 4096, count);
+  EXPECT_NEAR(E.E[0], 5000, 4 * E.std_error[0] + 1);
+  EXPECT_LT(E.std_error[0], 500);  // paths of 50 surfaces
+}
+
 TEST(Gloss, GathersAgreeWithPathsInAPolishedRoom) {
   // Floor and one wall are polished, so that light of the lamps goes over both; a third lamp is behind a pane.
   PatchBuilder builder(0.5);

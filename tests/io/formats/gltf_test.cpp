@@ -211,6 +211,10 @@ TEST_F(Gltf, GlossOfMetalsAndOthersIsTakenWhereItIsAskedForAndElseTold) {
   }
   EXPECT_EQ(brass.gloss->roughness, 0.3);
   EXPECT_TRUE(glossy.left_out.empty());
+  const Scene silent = read_scene(folder_.write("a.gltf", gltf(R"({ "mesh": 0 })", R"("materials": [ { "name": "paint",
+      "pbrMetallicRoughness": { "baseColorFactor": [0.8, 0.6, 0.4, 1] } } ])")),
+                                  {.gloss = "model"});
+  EXPECT_FALSE(material(silent, "paint").is_glossy());
 }
 
 TEST_F(Gltf, StripsAndFansAreTrianglesWoundAlike) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -176,6 +177,11 @@ TEST_F(Obj, GlossOfTheMaterialFileIsTakenWhereItIsAskedFor) {
   EXPECT_NEAR((white.reflectance + white.gloss->specular).max(), 0.99, 1e-12);
   EXPECT_NEAR(white.gloss->specular[0] / white.reflectance[0], 0.6 / 0.9, 1e-12);
   EXPECT_EQ(white.gloss->exponent, 1e6);
+  EXPECT_TRUE(std::ranges::any_of(glossy.warnings, [](const std::string& line) {
+    return line.find("brought down to it in proportion for 'white' (1.5)") != std::string::npos;
+  }));
+  folder_.write("a.mtl", "newmtl tile\nKs red\nNs shiny\nKd 0.4 0.4 0.4\n");
+  EXPECT_EQ(read_scene(file).materials[0].reflectance, Spectrum(0.4));
 }
 
 TEST_F(Obj, ReflectancesOfTheMaterialFileMustBeNumbers) {

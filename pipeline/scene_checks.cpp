@@ -174,6 +174,27 @@ std::vector<std::size_t> warn_about_sensors(const Problem& problem, const std::s
   return planes;
 }
 
+/// Rays all around find wide lobes well enough.
+void warn_about_curved_gloss(const Problem& problem, const std::string& file, Method method, Observer& observer) {
+  constexpr double kNarrow = 50;  // exponent
+  const GlossySides& gloss = problem.rays.gloss();
+  if (gloss.empty() || (problem.lights.luminaires.empty() && problem.lights.suns.empty())) return;
+  for (std::size_t i = 0; i < problem.patches.triangle_count(); ++i)
+    for (const Side side : {kFront, kBack}) {
+      const Lobe* lobe = gloss.lobe(TriangleId{i}, side);
+      if (!lobe || lobe->sharpness() < kNarrow || gloss.plane(TriangleId{i}) != kNoPlane) continue;
+      observer.warn(
+          file +
+          ": glossy surfaces lie in more than 64 planes, as curved ones do: what the smaller of them send on of "
+          "lamps and the sun by narrow lobes is mostly missing, " +
+          (method == Method::particles
+               ? "at sensors, and the measured error does not see it. A larger roughness has it."
+               : "and the measured error does not see it. --method particles has it on "
+                 "surfaces; a larger roughness has it everywhere."));
+      return;
+    }
+}
+
 }  // namespace
 
 bool has_light(const Scene& scene) {
@@ -212,38 +233,18 @@ void warn_about_scene(const Scene& scene, Observer& observer) {
                   "--layers and mix --set put the lamps at 0");
 }
 
-namespace {
-
-/// Rays all around find wide lobes well enough.
-void warn_about_curved_gloss(const Problem& problem, const std::string& file, Observer& observer) {
-  constexpr double kNarrow = 50;  // exponent
-  const GlossySides& gloss = problem.rays.gloss();
-  if (gloss.empty() || (problem.lights.luminaires.empty() && problem.lights.suns.empty())) return;
-  for (std::size_t i = 0; i < problem.patches.triangle_count(); ++i)
-    for (const Side side : {kFront, kBack}) {
-      const Lobe* lobe = gloss.lobe(TriangleId{i}, side);
-      if (!lobe || lobe->sharpness() < kNarrow || gloss.plane(TriangleId{i}) != kNoPlane) continue;
-      observer.warn(
-          file +
-          ": glossy surfaces lie in more than 64 planes, as curved ones do: what the smaller of them send on of "
-          "lamps and the sun by narrow lobes is mostly missing, and the measured error does not see it. --method "
-          "particles has it on surfaces; a larger roughness has it everywhere.");
-      return;
-    }
-}
-
-}  // namespace
-
 std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,
-                                           Observer& observer) {
+                                           Method method, Observer& observer) {
   warn_about_luminaires(problem, observer);
   constexpr double kMuch = 0.01;
   if (const double lost = problem.lights.lost_in_mirrors; lost > kMuch)
     observer.warn(
         text(scene.file, ": mirrors and glass turn ", percent(lost),
              " of the light of lamps and sun on ways that are not followed (more than 64 planes, more than 15 "
-             "one after another, or each with very little); it is missing where it arrives."));
-  warn_about_curved_gloss(problem, scene.file, observer);
+             "one after another, or each with very little); ",
+             method == Method::particles ? "at sensors and in the measured error it is missing."
+                                         : "it is missing where it arrives. --method particles has it on surfaces."));
+  warn_about_curved_gloss(problem, scene.file, method, observer);
   return warn_about_sensors(problem, scene.file, sensors, observer);
 }
 

@@ -6,6 +6,7 @@
 #include "pipeline/observer.h"
 #include "solver/evaluate/sensor_planes.h"
 #include "solver/illumination/problem.h"
+#include "solver/model/method.h"
 #include "solver/model/scene.h"
 
 namespace clerestory {
@@ -19,10 +20,10 @@ void require_light(const Scene& scene);
 /// What the reader assumed or left out, and material rules that match nothing.
 void warn_about_scene(const Scene& scene, Observer& observer);
 
-/// Luminaires outside every room and sensors inside solids.
+/// Luminaires outside every room, sensors inside solids, and light off mirrors that the method does not follow.
 ///
 /// returns  numbers of the sensors' planes that lie inside solids, ascending.
 std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& scene, const SensorPlanes& sensors,
-                                           Observer& observer);
+                                           Method method, Observer& observer);
 
 }  // namespace clerestory

@@ -122,7 +122,7 @@ Solved solve_scene(const Scene& scene, const Settings& asked, Observer& observer
         auto& [patches, repairs, rays, lights, lit_sides] = prepared->scene;
         const Problem problem = prepared->scene.problem();
         if (!buried) {
-          buried = warn_about_places(problem, scene, sensors, observer);
+          buried = warn_about_places(problem, scene, sensors, settings.solve.method, observer);
           hints = hints_about_panels(problem);
         }
 

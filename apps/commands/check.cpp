@@ -126,7 +126,7 @@ ExitCode check_command(const Arguments& arguments, Console& console) {
   }
   const auto& [patches, repairs, rays, lights, lit_sides] = *prepared;
   const SensorPlanes sensors = planes_of(scene.sensors);
-  warn_about_places(prepared->problem(), scene, sensors, console);
+  warn_about_places(prepared->problem(), scene, sensors, settings.solve.method, console);
 
   console.say(arguments.input + ": " + counted(scene.surfaces.size(), "object") + ", " +
               counted(scene.materials.size(), "material") + ", " + counted(sensors.sensor_count(), "sensor") + ", " +

@@ -222,7 +222,7 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   const SensorPlanes sensors = planes_of(scene.sensors);
   StageSeconds seconds;
   std::optional<PreparedToSolve> prepared = prepare_to_solve(shown, solving, observer, monitor, seconds);
-  warn_about_places(prepared->scene.problem(), shown, sensors, observer);
+  warn_about_places(prepared->scene.problem(), shown, sensors, solving.solve.method, observer);
   if (prepared->scene.rays.has_gloss())
     observer.warn(shown.file +
                   ": what glossy surfaces send on of the sun itself is left out of a year where it falls "

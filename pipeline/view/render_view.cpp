@@ -121,6 +121,9 @@ RenderedView render_view(const WrittenResult& result, const std::filesystem::pat
   if (image.empty()) return view;
   if (std::ranges::all_of(image.seen, [](float s) { return s == 0; }))
     observer.warn("nothing is seen from there: the picture is empty.");
+  const bool shows_light = request.shows_colour() || request.show == "luminance";
+  if (shows_light && std::ranges::any_of(result.materials, &Material::is_glossy))
+    view.notes.push_back("glossy surfaces show other surfaces and the sky, not lamps and the sun themselves");
   if (!request.shows_colour() && (request.show == "luminance" || !as_exr)) {
     image.value = one_channel(image.value, image.channels, request.show == "luminance" ? kWhiteEfficacy : 1);
     image.channels = 1;

@@ -41,8 +41,10 @@ struct Surfaces {
   double typical_area(std::uint32_t g) const { return area[g] > 0 ? area2[g] / area[g] : 0; }
 };
 
-/// Variance of a share found by so many rays, which is never known to be nothing.
-double variance_of_share(double share, int rays) {
+/// Variance of a share found by so many rays, which is never known to be nothing. A ray that ends on gloss goes on: it
+/// may count more than once, and shares sum to more than 1.
+double variance_of_share(double share, int rays, bool has_gloss) {
+  if (has_gloss) return std::max(share, 1.0 / rays) * (1 + share) / rays;
   const double n = rays, smoothed = (std::clamp(share, 0.0, 1.0) * n + 1) / (n + 2);
   return smoothed * (1 - smoothed) / n;
 }
@@ -182,9 +184,10 @@ LawCheck row_sums_of_matrix(const PatchSet& patches, const FormFactorMatrix& F, 
       worst.see(patches.room_of(i), std::abs(difference), kFloatError);
       continue;
     }
-    const double error2 = variance_of_share(arrives, rays), A = patches.area[i];
+    const double error2 = variance_of_share(arrives, rays, closure.has_gloss), A = patches.area[i];
     const std::uint32_t g = surfaces.of_patch[i];
-    worst.see(patches.room_of(i), std::abs(difference), kStdErrors * (std::sqrt(error2) + F.row_error[i]));
+    if (!closure.has_gloss)  // else rays from one patch tell too little, and surfaces tell all
+      worst.see(patches.room_of(i), std::abs(difference), kStdErrors * (std::sqrt(error2) + F.row_error[i]));
     off[g] += A * difference, variance[g] += A * A * error2, own[g] += A * F.row_error[i];
   }
   for (std::size_t g = 0; g < off.size(); ++g)
@@ -207,7 +210,7 @@ LawCheck row_sums_of_links(const PatchSet& leaves, const ElementTree& tree, cons
     const double arrives = luminous_mean(closure.arrives[i]), A = leaves.area[i];
     const std::uint32_t g = surfaces.of_patch[i];
     off[g] += A * (sum.at(i, 0) - arrives);
-    variance[g] += A * A * variance_of_share(arrives, rays);
+    variance[g] += A * A * variance_of_share(arrives, rays, closure.has_gloss);
   }
   // A receiver's rays are shared by its leaves.
   std::map<std::uint32_t, std::pair<double, double>> of_receiver;  // by surface: area, what arrives
@@ -221,7 +224,8 @@ LawCheck row_sums_of_links(const PatchSet& leaves, const ElementTree& tree, cons
       }
       for (const auto& [g, of] : of_receiver)
         if (of.first > 0)
-          variance[g] += of.first * of.first * variance_of_share(of.second / of.first, transport.bundle_rays);
+          variance[g] +=
+              of.first * of.first * variance_of_share(of.second / of.first, transport.bundle_rays, closure.has_gloss);
     }
   WorstInRooms worst(leaves.rooms);
   for (std::size_t g = 0; g < off.size(); ++g)

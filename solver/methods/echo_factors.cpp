@@ -11,7 +11,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::uint32_t kPilots = 64, kRays = 1024;
+constexpr std::uint32_t kPilots = 64;
 
 struct Arrival {
   std::uint32_t patch;
@@ -61,16 +61,16 @@ void add_echoes(FormFactorMatrix& F, const PatchSet& patches, const RayScene& ra
       for (std::size_t k = from; k < to; ++k) {
         found[k].clear();
         if (sees_glass[begin + k])
-          look(patches, rays, begin + k, kRays, stream_key(seed, kEchoFactors, begin + k), found[k]);
+          look(patches, rays, begin + k, kEchoRays, stream_key(seed, kEchoFactors, begin + k), found[k]);
       }
     });
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = begin + k;
-      if (sees_glass[i]) F.rays += kRays;
+      if (sees_glass[i]) F.rays += kEchoRays;
       for (const auto& [j, share] : found[k]) {
         // The exchange is the same both ways: half by the rays of either, all by those of one where the other sends
         // none.
-        const double F_ij = share / kRays / (sees_glass[j] ? 2 : 1);
+        const double F_ij = share / kEchoRays / (sees_glass[j] ? 2 : 1);
         F.value[i * F.n + j] += static_cast<float>(F_ij);
         F.value[j * F.n + i] += static_cast<float>(F_ij * patches.area[i] / patches.area[j]);
       }

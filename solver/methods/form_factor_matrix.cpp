@@ -316,6 +316,24 @@ std::vector<double> row_sums(const FormFactorMatrix& F) {
   return sum;
 }
 
+/// Adds what glass turns back and lobes send on. Such rows sum to more than 1, by as much as lobes bring; of what
+/// leaves the scene rays tell, and rows know their noise.
+void add_lobes(FormFactorMatrix& F, const PatchSet& patches, const RayScene& rays, std::uint64_t seed,
+               const Monitor& monitor) {
+  const std::vector<double> before = F.row_sum;
+  add_echoes(F, patches, rays, seed, monitor);
+  F.row_sum = row_sums(F);
+  const Lights dark;
+  const Closure closure = measure_closure({patches, rays, dark}, kRaysForClosure, seed);
+  F.rays += closure.rays;
+  for (std::size_t i = 0; i < F.n; ++i) {
+    const double more = std::max(0.0, F.row_sum[i] - before[i]);
+    if (more > 0) F.closed[i] = false;
+    F.row_error[i] += std::sqrt(more * (1 + more) / kEchoRays);
+    F.escapes[i] = luminous_mean(closure.escapes[i]);
+  }
+}
+
 /// Physical memory of the machine [bytes].
 std::size_t physical_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGE_SIZE);
@@ -366,27 +384,29 @@ FormFactorMatrix form_factor_matrix(const PatchSet& patches, const RayScene& ray
     F.pairs_unblocked = builder.unblocked, F.pairs_sampled = builder.sampled, F.rays = builder.ray_count;
     for (std::size_t i = 0; i < n; ++i) F.row_error[i] = builder.row_std_error(i) + kQuadratureError;
   }
-  if (F.complete) add_echoes(F, patches, rays, options.seed, monitor);
+  // What lobes send on comes on top of rows that are whole without it.
+  F.has_gloss = rays.has_gloss();
+  if (F.complete && !F.has_gloss) add_echoes(F, patches, rays, options.seed, monitor);
   F.raw_row_sum = row_sums(F);
   F.row_sum = F.raw_row_sum;
   if (!F.complete) return F;
 
   const Lights dark;
-  const Closure closure = measure_closure({patches, rays, dark}, kRaysForClosure, options.seed);
+  const RayScene matt = rays.without_gloss();
+  const Closure closure = measure_closure({patches, matt, dark}, kRaysForClosure, options.seed);
   F.rays += closure.rays;
-  F.has_gloss = closure.has_gloss;
   for (std::size_t i = 0; i < n; ++i) {
     bool all_arrives = true;
     for (int k = 0; k < closure.arrives.channels; ++k) all_arrives &= closure.arrives.at(i, k) > 1 - 1e-9;
     const double lost = 1 - luminous_mean(closure.arrives[i]), escaped = luminous_mean(closure.escapes[i]);
     if (lost > 0) F.escapes[i] = std::clamp(escaped / lost, 0.0, 1.0);
-    if (closure.has_gloss) F.escapes[i] = escaped;
     F.closed[i] = all_arrives && std::abs(F.raw_row_sum[i] - 1) <= 6 * F.row_error[i];
   }
   if (options.close_rows) {
     close_rows(F, patches.area);
     F.row_sum = row_sums(F);
   }
+  if (F.has_gloss) add_lobes(F, patches, rays, options.seed, monitor);
   monitor.report("form factors", 1);
   return F;
 }

@@ -13,8 +13,8 @@ namespace clerestory {
 
 struct ParticleOptions {
   double particles = 400;  ///< sent for each patch; at least 2^15 in all
-  KernelOptions kernel{};
-  double radius = 1;  ///< of the kernels, over that which suits the mesh and the particles [1]
+  KernelShape kernel = KernelShape::epanechnikov;
+  double radius = 1;  ///< of the kernels, over that which suits the mesh and the particles [1]; benchmarks turn both
   std::uint64_t seed = 1;
 };
 

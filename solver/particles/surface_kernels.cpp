@@ -77,9 +77,9 @@ void add_edge(KernelShape shape, double ax, double ay, double bx, double by, Mom
 }
 
 /// a and b of w = K (a + b . d), in units of h; b is zero where the surface is too narrow to tell a slope.
-std::array<double, 3> weights(const Moments& m, bool linear) {
+std::array<double, 3> weights(const Moments& m) {
   const double det = m.xx * m.yy - m.xy * m.xy, trace = m.xx + m.yy;
-  if (linear && det > 1e-6 * trace * trace) {
+  if (det > 1e-6 * trace * trace) {
     // b = -S^-1 (x, y) a, from the integrals of w d = 0.
     const double bx = -(m.yy * m.x - m.xy * m.y) / det, by = -(m.xx * m.y - m.xy * m.x) / det;
     const double all = m.one + bx * m.x + by * m.y;
@@ -102,8 +102,8 @@ std::vector<double> edge_lengths(const PatchSet& patches, const VertexLightmap& 
 }
 
 SurfaceKernels::SurfaceKernels(const PatchSet& patches, const VertexLightmap& map, std::span<const double> radius,
-                               const KernelOptions& options)
-    : shape_(options.shape), points_(map.position.size()), begin_(map.position.size() + 1, 0) {
+                               KernelShape shape)
+    : shape_(shape), points_(map.position.size()), begin_(map.position.size() + 1, 0) {
   // Patches by point.
   std::vector<std::uint32_t> first(points_.size() + 1, 0), around;
   for (const auto& corners : map.corners)
@@ -159,7 +159,7 @@ SurfaceKernels::SurfaceKernels(const PatchSet& patches, const VertexLightmap& ma
         parts[p].clear();
         continue;
       }
-      const auto [a, bx, by] = weights(m, options.linear);
+      const auto [a, bx, by] = weights(m);
       point.a = a / (h * h);
       point.along = (frame.t * bx + frame.b * by) / (h * h * h);
     }

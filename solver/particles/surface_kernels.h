@@ -17,11 +17,6 @@ enum class KernelShape { constant, cone, epanechnikov };
 /// half of that times h^2 times the Laplacian of the irradiance.
 double second_moment(KernelShape shape);
 
-struct KernelOptions {
-  KernelShape shape = KernelShape::epanechnikov;
-  bool linear = true;  ///< takes off what is first order in the distance where the surface ends; else its area alone
-};
-
 /// A kernel around each point of a lightmap, over the patches that go on from there as one smooth surface:
 ///   E(p) = sum of flux w(x - p),    w(d) = K(|d|) (a + b . d)
 /// with a and b such that an irradiance that is constant, or linear along the surface, comes out as it is whatever part
@@ -35,7 +30,7 @@ class SurfaceKernels {
  public:
   SurfaceKernels() = default;
   SurfaceKernels(const PatchSet& patches, const VertexLightmap& map, std::span<const double> radius,
-                 const KernelOptions& options = {});
+                 KernelShape shape = KernelShape::epanechnikov);
 
   std::size_t size() const { return begin_.size() - 1; }
   /// Whether any surface lies around the point.

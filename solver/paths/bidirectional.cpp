@@ -19,13 +19,9 @@
 namespace clerestory {
 namespace {
 
-/// A path from the receiver is not ended while it carries more than this of what it started with.
-constexpr double kSafe = 0.3;
 /// A particle goes on from a surface with its albedo for the chance, and no more than this, so that their number has a
 /// bound where surfaces absorb nothing.
 constexpr double kMostSurvival = 0.95;
-/// What the choice of an opening and the ray through it cost, in rays.
-constexpr unsigned kCostOfOpening = 3;
 
 /// The last part of a path on its way to `at`, and what it was before.
 struct EyePlace {

@@ -26,12 +26,6 @@ Spectrum PathSum::std_error() const {
 
 namespace {
 
-/// A path is not ended while it carries more than this of what it started with. Measured: variance times time is least
-/// from 0.2 to 0.4, a sixth of that at 1 in a room of reflectance 0.5.
-constexpr double kSafe = 0.3;
-/// What the choice of an opening and the ray through it cost, in rays.
-constexpr unsigned kCostOfOpening = 3;
-
 /// One shadow ray to a light chosen by u. Of light that bundle rays meet too, the share that is due to shadow rays.
 Spectrum one_light(const Illumination& light, const Vec3& p, const Vec3& n, const std::array<double, 3>& u,
                    unsigned long long& rays) {

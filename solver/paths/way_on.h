@@ -8,6 +8,12 @@
 
 namespace clerestory {
 
+/// A path is not ended while it carries more than this of what it started with. Measured: variance times time is least
+/// from 0.2 to 0.4, a sixth of that at 1 in a room of reflectance 0.5.
+inline constexpr double kSafe = 0.3;
+/// What the choice of an opening and the ray through it cost, in rays.
+inline constexpr unsigned kCostOfOpening = 3;
+
 /// Mostly in proportion to the cosine; where there are slits, half of the paths through one of them: others find them
 /// once in a thousand times. Either way counts by its share of both densities.
 struct WayOn {

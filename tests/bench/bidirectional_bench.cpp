@@ -13,13 +13,11 @@
 
 #include "io/read_scene.h"
 #include "io/read_sensors.h"
-#include "meshing/build_patches.h"
-#include "solver/illumination/place_lights.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
 #include "solver/paths/bidirectional.h"
 #include "solver/sampling/unit_square.h"
-#include "solver/spaces/lit_sides.h"
+#include "tests/bench/bare_problem.h"
 
 namespace clerestory {
 namespace {
@@ -90,13 +88,10 @@ std::vector<ReceivingPoint> points_on(const Problem& problem) {
 void compare(const std::string& argument, double seconds) {
   const std::size_t colon = argument.find(':');
   const Scene scene = read_scene(argument.substr(0, colon));
-  auto meshed = build_patches(scene, {.max_element = 1e3});  // paths need no fine mesh
-  PatchSet& patches = meshed.patches;
-  patches.channels = scene.channels();
-  const RayScene rays(patches);
-  const Lights lights = place_lights(scene.lights, patches, rays);
-  const Problem problem{patches, rays, lights};
-  make_patches(patches, find_lit_sides(problem, 1).wanted);
+  const BareProblem bare(scene);
+  const Problem& problem = bare.problem;
+  const PatchSet& patches = problem.patches;
+  const RayScene& rays = problem.rays;
   std::vector<ReceivingPoint> points;
   if (colon == argument.npos) {
     points = points_on(problem);

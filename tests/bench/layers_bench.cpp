@@ -16,13 +16,10 @@
 #include "solver/illumination/place_lights.h"
 #include "solver/methods/hierarchical_field.h"
 #include "solver/run/accuracy.h"
+#include "tests/bench/row.h"
 
 namespace clerestory {
 namespace {
-
-void row(const char* what, double value, const char* unit, const char* bar) {
-  std::printf("%s,%.4g,%s,%s\n", what, value, unit, bar);
-}
 
 /// A scene on its way into hierarchical_field(), by the options of solve() at `standard`.
 struct Start {

@@ -1,6 +1,6 @@
 // Particles in the Cornell box, at the mesh of `standard`: ten million of them, and a photon map; with
-// --kernels SCENE how far off vertices are by shape and radius of their kernels, against paths, and with --nearest
-// SCENE by the nearest landings of a map. Prints one CSV row a figure: what, value, unit, bar.
+// --kernels SCENE how far off vertices are by shape and radius of their kernels, against paths. Prints one CSV row a
+// figure: what, value, unit, bar.
 
 #include <algorithm>
 #include <array>
@@ -20,16 +20,12 @@
 #include "solver/model/units.h"
 #include "solver/particles/photon_map.h"
 #include "solver/paths/path_tracer.h"
+#include "tests/bench/row.h"
 
 namespace clerestory {
 namespace {
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-void row(const std::string& what, double value, const char* unit, const char* bar = "") {
-  std::printf("%s,%.4g,%s,%s\n", what.c_str(), value, unit, bar);
-  std::fflush(stdout);
-}
 
 struct Start {
   Scene scene;
@@ -69,34 +65,13 @@ void kernels(const std::string& scene) {
              reference);
   for (const double particles : {100.0, 400.0, 1600.0})
     for (const KernelShape shape : {KernelShape::constant, KernelShape::cone, KernelShape::epanechnikov})
-      for (const double radius : {0.8, 1.0, 1.25, 1.6, 2.0})
-        for (const bool linear : {true}) {
-          trace_particles(light, {.particles = particles, .kernel = {shape, linear}, .radius = radius}, &map);
-          const char* names[] = {"constant", "cone", "epanechnikov"};
-          row(scene + ' ' + std::to_string(static_cast<int>(particles)) + ' ' + names[static_cast<int>(shape)] + ' ' +
-                  std::to_string(radius).substr(0, 3) + (linear ? " linear" : " area"),
-              100 * rms(problem.patches, map, reference), "%");
-        }
-}
-
-/// The same by the nearest landings of a map, which knows no edges.
-void nearest(const std::string& scene) {
-  const Start start(scene);
-  const Problem problem = start.prepared.scene.problem();
-  const Illumination light(problem);
-  VertexLightmap reference = start.prepared.lightmap, map = reference;
-  set_points(trace_paths_at(light, reference.sample_position.size(), sample_points(reference, problem.rays), 2048, 99,
-                            "reference"),
-             reference);
-  constexpr std::array kAll{ParticleWay::straight, ParticleWay::turned, ParticleWay::scattered};
-  const PhotonMap photons(send_photons(light, 400 * problem.patches.patch_count(), kAll, 1));
-  std::vector<PhotonMap::Neighbour> found;
-  for (const std::size_t count : {500, 1000, 2000, 4000, 8000}) {
-    for (std::size_t p = 0; p < map.position.size(); ++p)
-      map.E.set(p, irradiance(photons, problem.patches, map.position[p], problem.patches.normal[map.patch_of_point[p]],
-                              count, 1e9, found));
-    row(scene + " 400 nearest " + std::to_string(count), 100 * rms(problem.patches, map, reference), "%");
-  }
+      for (const double radius : {0.8, 1.0, 1.25, 1.6, 2.0}) {
+        trace_particles(light, {.particles = particles, .kernel = shape, .radius = radius}, &map);
+        const char* names[] = {"constant", "cone", "epanechnikov"};
+        row(scene + ' ' + std::to_string(static_cast<int>(particles)) + ' ' + names[static_cast<int>(shape)] + ' ' +
+                std::to_string(radius).substr(0, 3),
+            100 * rms(problem.patches, map, reference), "%");
+      }
 }
 
 void ten_million() {
@@ -149,11 +124,8 @@ void photon_map() {
 
 int main(int count, char** arguments) {
   using namespace clerestory;
-  const std::string what = count > 2 ? arguments[1] : "";
-  if (what == "--kernels")
+  if (count > 2 && std::string(arguments[1]) == "--kernels")
     kernels(arguments[2]);
-  else if (what == "--nearest")
-    nearest(arguments[2]);
   else
     ten_million(), photon_map();
 }

@@ -18,14 +18,12 @@
 
 #include "io/read_scene.h"
 #include "io/read_sensors.h"
-#include "meshing/build_patches.h"
-#include "solver/illumination/place_lights.h"
 #include "solver/lights/sun.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
 #include "solver/sampling/unit_square.h"
-#include "solver/spaces/lit_sides.h"
+#include "tests/bench/bare_problem.h"
 
 namespace clerestory {
 namespace {
@@ -170,14 +168,10 @@ int run(const Arguments& arguments) {
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const Scene scene = read_scene(arguments.scene);
   const std::vector<SensorPoint> points = read_sensors(arguments.points).points;
-  // Paths need no fine mesh.
-  auto meshed = build_patches(scene, {.max_element = 1e3});
-  PatchSet& patches = meshed.patches;
-  patches.channels = scene.channels();
-  const RayScene rays(patches);
-  const Lights lights = place_lights(scene.lights, patches, rays);
-  const Problem problem{patches, rays, lights};
-  make_patches(patches, find_lit_sides(problem, 1).wanted);
+  const BareProblem bare(scene);
+  const Problem& problem = bare.problem;
+  const PatchSet& patches = problem.patches;
+  const RayScene& rays = problem.rays;
   const Illumination light(problem);
   std::optional<SunPatch> patch = arguments.sun_patch;
   if (patch) {

@@ -46,7 +46,7 @@ std::vector<std::string> warnings_about(const Scene& scene) {
   StageSeconds seconds;
   const auto prepared = prepare(scene, {.solve = {.accuracy = Accuracy::draft}}, {}, seconds);
   Listener listener;
-  warn_about_places(prepared->problem(), scene, planes_of(scene.sensors), listener);
+  warn_about_places(prepared->problem(), scene, planes_of(scene.sensors), Method::hierarchical, listener);
   return listener.warnings;
 }
 

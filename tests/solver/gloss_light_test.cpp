@@ -100,7 +100,7 @@ TEST_P(EveryMethod, HasOneRadianceInAFurnaceOfGloss) {
   const RayScene rays(patches);
   const Lights lights;
   SolveOptions options;
-  options.method = GetParam(), options.accuracy = Accuracy::draft;
+  options.method = GetParam(), options.accuracy = Accuracy::draft, options.check_laws = true;
   const SolvedPatches solved = solve({patches, rays, lights}, test::unjoined_lightmap(patches), 1.0, options);
   const PatchSet& elements = solved.elements.patch_count() > 0 ? solved.elements : patches;
   const double expected = 100 / (1 - 0.3 - 0.4);
@@ -108,6 +108,11 @@ TEST_P(EveryMethod, HasOneRadianceInAFurnaceOfGloss) {
   std::vector<double> E = solved.solution.E.value;
   std::ranges::nth_element(E, E.begin() + static_cast<long>(E.size() / 2));
   EXPECT_NEAR(E[E.size() / 2], expected, 0.01 * expected);
+  for (const LawCheck& law : solved.laws) {
+    if (law.law == Law::row_sums) {
+      EXPECT_TRUE(law.holds());
+    }
+  }
   const EnergyBalance& energy = solved.solution.energy;
   EXPECT_NEAR(energy.emitted, 100 * elements.total_area(), 1e-6 * energy.emitted);
   // 32,768 particles that land three times know it to a half of a percent.

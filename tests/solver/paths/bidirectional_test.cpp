@@ -217,15 +217,21 @@ TEST(Bidirectional, KnowsTheLightOfAClosedRoomOfGlossThatGlowsAllOver) {
   }
 }
 
-class BidirectionalByLobe : public ::testing::TestWithParam<Gloss> {};
+struct NamedGloss {
+  const char* name;
+  Gloss gloss;
+};
+void PrintTo(const NamedGloss& g, std::ostream* out) { *out << g.name; }
+
+class BidirectionalByLobe : public ::testing::TestWithParam<NamedGloss> {};
 TEST_P(BidirectionalByLobe, MeansTheLightOfPathsInAPolishedRoom) {
   // Lamps, a panel, sky and sun by a hole; floor and a wall are glossy, and so is a table below.
   PatchBuilder b(0.5);
   b.rectangle({0, 0, 2.5}, {0, 3, 0}, {3, 0, 0}), b.rectangle({0, 0, 0}, {0, 0, 2.5}, {4, 0, 0});
   b.rectangle({0, 3, 0}, {4, 0, 0}, {0, 0, 2.5}), b.rectangle({4, 0, 0}, {0, 0, 2.5}, {0, 3, 0});
-  b.glossy(0.2, GetParam()).rectangle({0, 0, 0}, {4, 0, 0}, {0, 3, 0});
-  b.glossy(0.3, GetParam()).rectangle({0, 0, 0}, {0, 3, 0}, {0, 0, 2.5});
-  b.glossy(0.1, GetParam()).box({1.5, 1, 0.7}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.05}, {1, 1, 1}, false);
+  b.glossy(0.2, GetParam().gloss).rectangle({0, 0, 0}, {4, 0, 0}, {0, 3, 0});
+  b.glossy(0.3, GetParam().gloss).rectangle({0, 0, 0}, {0, 3, 0}, {0, 0, 2.5});
+  b.glossy(0.1, GetParam().gloss).box({1.5, 1, 0.7}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.05}, {1, 1, 1}, false);
   b.material(0.3, 50).rectangle({1, 2.99, 1.2}, {0.5, 0, 0}, {0, 0, 0.4});
   b.glass(0.7).rectangle({3, 0.5, 0}, {0, 2, 0}, {0, 0, 2.5});
   b.mirror(0.8).rectangle({0.5, 0.02, 0.5}, {0, 0, 1}, {1, 0, 0});
@@ -236,8 +242,10 @@ TEST_P(BidirectionalByLobe, MeansTheLightOfPathsInAPolishedRoom) {
   expect_the_light_of_paths({b.build(), spec}, 24, 1024);
 }
 INSTANTIATE_TEST_SUITE_P(, BidirectionalByLobe,
-                         ::testing::Values(Gloss{Spectrum(0.5), 0.0}, Gloss{Spectrum(0.5), 20.0},
-                                           Gloss{Spectrum(0.4), {}, 0.6}, Gloss{Spectrum(0.5), {}, 0.3}));
+                         ::testing::Values(NamedGloss{"exponent 0", {Spectrum(0.5), 0.0}},
+                                           NamedGloss{"exponent 20", {Spectrum(0.5), 20.0}},
+                                           NamedGloss{"roughness 0.6", {Spectrum(0.4), {}, 0.6}},
+                                           NamedGloss{"roughness 0.3", {Spectrum(0.5), {}, 0.3}}));
 
 class ShippedScene : public ::testing::TestWithParam<const char*> {};
 TEST_P(ShippedScene, HasTheSameLightFromBothEnds) {

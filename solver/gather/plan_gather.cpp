@@ -219,8 +219,8 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
   // Light at the point, as far as it is known: what is small beside it need not be known well.
   double known = light.bright_areas.ambient;
   if (!light.problem.lights.empty())
-    plan.delta_light =
-        luminous_mean(light.sampler.delta_light(p, n, {.sun_rays = 4, .opening_rays = 4}, pattern.sun_key()));
+    plan.delta_light = luminous_mean(
+        light.sampler.delta_light(p, n, {.sun_rays = 4, .opening_rays = 4, .gloss_rays = 4}, pattern.sun_key()));
   known += plan.delta_light;
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, std::vector<std::uint32_t>& numbers,
                            std::vector<AreaPlan>& plans) {

@@ -129,7 +129,7 @@ Variation irradiance_variation(const Illumination& light, const Field& B, const 
       const auto v = sobol4(static_cast<std::uint32_t>(k), place);
       for (std::size_t s = 0; s < kParts; ++s)
         value[s] = luminous_mean(light.sampler.delta_light(lifted(point_on_triangle(parts[s], v[0], v[1])), normal,
-                                                           {.opening_rays = kRaysOfLuminaire},
+                                                           {.opening_rays = kRaysOfLuminaire, .gloss_rays = 4},
                                                            mix_bits(place + static_cast<std::uint64_t>(k))));
       delta.add(value);
     }

@@ -88,7 +88,7 @@ std::size_t predicted(const RunReport::Counts& c, const Solved& s) {
 std::string error_line(const MeasuredError& e) {
   const ErrorOfPart* worst = e.parts.size() > 1 ? e.worst() : nullptr;
   const std::string where =
-      ", measured at " + counted(e.samples, "point") +
+      ", measured at " + counted(e.samples, "point") + (e.reference.empty() ? "" : " by " + e.reference) +
       (worst ? "; worst in '" + quotable(worst->name, 40) + "': " + (worst->figures.bound ? "below " : "") +
                    percent(worst->figures.rms_relative) +
                    (worst->figures.bound ? "" : " (+- " + percent(worst->figures.confidence) + ")") + " rms of " +
@@ -178,8 +178,9 @@ void fill_report(RunReport& r, const Scene& scene, const Solved& s) {
   r.stop = s.solution.stop;
   r.log = s.solution.log;
   r.repairs = s.repairs;
-  if (s.error) r.error = figures_of(*s.error);
-  if (s.error_sensors) r.error_sensors = figures_of(*s.error_sensors);
+  if (s.error) r.error = figures_of(*s.error), r.error->reference = s.error->reference;
+  if (s.error_sensors)
+    r.error_sensors = figures_of(*s.error_sensors), r.error_sensors->reference = s.error_sensors->reference;
   r.error_spaces = parts_of(s.error);
   r.error_sets = parts_of(s.error_sensors);
   if (const ErrorOfPart* worst = s.error ? s.error->worst() : nullptr)

@@ -42,8 +42,9 @@ std::vector<Row> rows_of(const Json& json, const char* name, const Read& read) {
 }
 
 RunReport::Error error_of(const Json& json) {
-  return {get<double>(json, "rms_relative"), get<double>(json, "median_relative"), get<double>(json, "p95_relative"),
-          get<std::size_t>(json, "samples"), get<double>(json, "confidence"),      get<bool>(json, "bound")};
+  return {get<double>(json, "rms_relative"),  get<double>(json, "median_relative"), get<double>(json, "p95_relative"),
+          get<std::size_t>(json, "samples"),  get<double>(json, "confidence"),      get<bool>(json, "bound"),
+          get<std::string>(json, "reference")};
 }
 
 RunReport::PartError part_error_of(const Json& json) {

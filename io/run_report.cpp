@@ -50,6 +50,7 @@ void add_error_figures(std::vector<Figure>& out, const std::string& group,
   out.push_back({group + ".samples", count(error->samples)});
   out.push_back({group + ".confidence", error->confidence});
   out.push_back({group + ".bound", error->bound});
+  if (!error->reference.empty()) out.push_back({group + ".reference", error->reference});
 }
 
 void add_energy_figures(std::vector<Figure>& out, const EnergyBalance& energy) {

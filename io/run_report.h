@@ -45,8 +45,9 @@ struct RunReport {
   struct Error {
     double rms_relative = 0, median_relative = 0, p95_relative = 0;  ///< [1]
     std::size_t samples = 0;
-    double confidence = 0;  ///< half-width of the 95 % interval of rms_relative
-    bool bound = false;     ///< the error is not resolved: it is at most so large
+    double confidence = 0;    ///< half-width of the 95 % interval of rms_relative
+    bool bound = false;       ///< the error is not resolved: it is at most so large
+    std::string reference{};  ///< what it was compared with, in words; empty: not told
   };
   /// Of a room or a set of sensors.
   struct PartError {

@@ -11,6 +11,7 @@
 #include "pipeline/parts_of_light.h"
 #include "pipeline/scene_checks.h"
 #include "pipeline/wording.h"
+#include "solver/illumination/caustic_legs.h"
 #include "solver/illumination/place_lights.h"
 #include "solver/model/error.h"
 #include "solver/run/accuracy.h"
@@ -67,9 +68,9 @@ std::size_t memory_after_reading(std::size_t limit, const MeshReport& repairs) {
                    "; raise --memory-limit, or leave out detail of the model.");
 }
 
-/// Rooms, and points to show the light on.
-std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, const Scene& scene, const Monitor& monitor,
-                                           StageSeconds& seconds) {
+/// Rooms, points to show the light on, and caustics.
+std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, const Scene& scene,
+                                           const SolveOptions& options, const Monitor& monitor, StageSeconds& seconds) {
   if (!prepared) return {};
   if (prepared->patches.patch_count() == 0) {
     std::string why = scene.file + ": no light reaches any surface; move or aim the lights at the model.";
@@ -81,6 +82,9 @@ std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, con
   prepared->patches.room = std::move(rooms.of_patch);
   prepared->patches.rooms = std::move(rooms.names);
   VertexLightmap map = make_lightmap(prepared->patches);
+  const Effort e = effort(options.accuracy, options.tighten);
+  prepared->lights.caustics = find_caustics(prepared->problem(), static_cast<std::size_t>(e.caustic_particles),
+                                            static_cast<std::size_t>(e.caustic_legs), options.seed, monitor);
   lap.add_to(seconds.build);
   return PreparedToSolve{std::move(*prepared), std::move(map)};
 }
@@ -94,14 +98,15 @@ std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, co
 
 std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& settings, Observer& observer,
                                                 const Monitor& monitor, StageSeconds& seconds) {
-  if (!settings.memory_limit) return with_points(prepare(scene, settings, monitor, seconds), scene, monitor, seconds);
+  if (!settings.memory_limit)
+    return with_points(prepare(scene, settings, monitor, seconds), scene, settings.solve, monitor, seconds);
   const std::size_t limit = *settings.memory_limit, faces = scene.polygons.face_count();
   const double asked = longest_edge(settings).value_or(0), wanted = target_triangles(settings.solve);
   std::size_t fit = triangles_that_fit(faces, limit);
   if (fit == 0) refuse_memory(scene, least_memory({faces, faces, faces, faces, faces}), limit);
   for (std::size_t last = std::numeric_limits<std::size_t>::max();; fit /= 2) {
-    auto p =
-        with_points(prepare_in(static_cast<double>(fit), scene, settings, monitor, seconds), scene, monitor, seconds);
+    auto p = with_points(prepare_in(static_cast<double>(fit), scene, settings, monitor, seconds), scene, settings.solve,
+                         monitor, seconds);
     if (!p) return {};
     const auto& [patches, repairs, rays, lights, lit_sides] = p->scene;
     settings.solve.memory_limit = memory_after_reading(limit, repairs);

@@ -174,25 +174,15 @@ std::vector<std::size_t> warn_about_sensors(const Problem& problem, const std::s
   return planes;
 }
 
-/// Rays all around find wide lobes well enough.
-void warn_about_curved_gloss(const Problem& problem, const std::string& file, Method method, Observer& observer) {
-  constexpr double kNarrow = 50;  // exponent
-  const GlossySides& gloss = problem.rays.gloss();
-  if (gloss.empty() || (problem.lights.luminaires.empty() && problem.lights.suns.empty())) return;
-  for (std::size_t i = 0; i < problem.patches.triangle_count(); ++i)
-    for (const Side side : {kFront, kBack}) {
-      const Lobe* lobe = gloss.lobe(TriangleId{i}, side);
-      if (!lobe || lobe->sharpness() < kNarrow || gloss.plane(TriangleId{i}) != kNoPlane) continue;
-      observer.warn(
-          file +
-          ": glossy surfaces lie in more than 64 planes, as curved ones do: what the smaller of them send on of "
-          "lamps and the sun by narrow lobes is mostly missing, " +
-          (method == Method::particles
-               ? "at sensors, and the measured error does not see it. A larger roughness has it."
-               : "and the measured error does not see it. --method particles has it on "
-                 "surfaces; a larger roughness has it everywhere."));
-      return;
-    }
+/// Paths from both ends meet at surfaces; what a curved mirror sends to the very place that is asked for they do not
+/// find.
+void warn_about_caustics(const Problem& problem, const std::string& file, Method method, Observer& observer) {
+  if (method != Method::bidirectional || problem.lights.caustics.sides.empty()) return;
+  observer.warn(
+      file +
+      ": mirrors or narrow gloss lie in more than 64 planes, as curved ones do: what the smaller of them send "
+      "on of lamps and the sun is missing where it arrives, or noisy, and counts where surfaces send it on. "
+      "All other methods have it.");
 }
 
 }  // namespace
@@ -244,7 +234,7 @@ std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& 
              "one after another, or each with very little); ",
              method == Method::particles ? "at sensors and in the measured error it is missing."
                                          : "it is missing where it arrives. --method particles has it on surfaces."));
-  warn_about_curved_gloss(problem, scene.file, method, observer);
+  warn_about_caustics(problem, scene.file, method, observer);
   return warn_about_sensors(problem, scene.file, sensors, observer);
 }
 

@@ -17,6 +17,9 @@ done
 "$program" render "$results/cornell_box.vtp" -o docs/pictures/view_fit.png --size 480x400
 "$program" render "$results/office.vtp" -o docs/pictures/view_fisheye.png --eye 2,4.6,1.5 --target 2,0,1.4 --fisheye \
   --show luminance --log-scale --size 480x480
+"$program" solve data/scenes/polished_ring.json -o "$results/polished_ring.vtp" --quiet
+"$program" render "$results/polished_ring.vtp" -o docs/pictures/caustic.png --eye 1.5,0.2,1.6 --target 1.5,1.55,0 \
+  --fov 50 --size 800x480 --show illuminance --range 50:600 --log-scale
 "$program" solve data/scenes/classroom.json -o "$results/classroom_layers.vtp" --layers --quiet
 "$program" mix "$results/classroom_layers.vtp" -o "$results/classroom_dimmed.vtp" --set windows=0 --set middle=0.5 --quiet
 "$program" render "$results/classroom_dimmed.vtp" -o docs/pictures/view_dimmed.png --plan 1.2 --show illuminance \

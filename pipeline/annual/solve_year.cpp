@@ -31,6 +31,14 @@ constexpr std::size_t kBlock = 32;         ///< points of one task: their shadow
 constexpr std::size_t kBlocksAtOnce = 32;  ///< whose series are there together
 constexpr std::size_t kCoarseParts = 145;  ///< of light that surfaces send on
 
+/// More planes of them than show images of the sun.
+bool has_curved_mirrors(const Prepared& scene) {
+  for (std::size_t t = 0; t < scene.patches.triangle_count(); ++t)
+    if (scene.patches.front_material(TriangleId{t}).turns_rays() && scene.rays.plane_of(TriangleId{t}) == kNoPlane)
+      return true;
+  return false;
+}
+
 Monitor monitor_of(Observer& observer) {
   return {[&observer](std::string_view stage, double done) { observer.progress(stage, done); }, {}};
 }
@@ -223,6 +231,11 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   StageSeconds seconds;
   std::optional<PreparedToSolve> prepared = prepare_to_solve(shown, solving, observer, monitor, seconds);
   warn_about_places(prepared->scene.problem(), shown, sensors, solving.solve.method, observer);
+  if (has_curved_mirrors(prepared->scene))
+    observer.warn(
+        shown.file +
+        ": mirrors lie in more than 64 planes, as curved ones do: what the smaller of them send on of the sun "
+        "itself is left out of a year.");
   if (prepared->scene.rays.has_gloss())
     observer.warn(shown.file +
                   ": what glossy surfaces send on of the sun itself is left out of a year where it falls "

@@ -9,13 +9,17 @@
 #include <utility>
 
 #include "solver/evaluate/points_by_room.h"
+#include "solver/evaluate/reference_paths.h"
 #include "solver/evaluate/two_gathers.h"
 #include "solver/gather/gather.h"
+#include "solver/illumination/caustic_legs.h"
+#include "solver/illumination/caustic_light.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
+#include "solver/paths/without_caustics.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
@@ -66,9 +70,15 @@ std::vector<const ErrorOfPart*> MeasuredError::unknown() const {
 
 namespace {
 
+struct Compared {
+  std::vector<Comparison> at;  ///< those that were finished
+  std::string reference;
+};
+
 /// Figures of all comparisons, and of each part.
-MeasuredError summarise_parts(const std::vector<Comparison>& comparisons, std::vector<ErrorOfPart> parts) {
-  MeasuredError error{summarise(comparisons)};
+MeasuredError summarise_parts(const Compared& compared, std::vector<ErrorOfPart> parts) {
+  const std::vector<Comparison>& comparisons = compared.at;
+  MeasuredError error{summarise(comparisons), compared.reference};
   std::vector<std::vector<Comparison>> of_part(parts.size());
   for (const Comparison& c : comparisons) of_part[c.part].push_back(c);
   for (std::size_t k = 0; k < parts.size(); ++k) parts[k].figures = summarise(of_part[k]);
@@ -82,14 +92,40 @@ struct References {
   bool complete = false;
 };
 
+/// References of the caustics at the places of `at`, each by half as many particles, of its own, over kernels of half
+/// the width: their noise is known, and what kernels blur is a quarter.
+void add_caustics(const Problem& problem, bool has_gathers, const PointOf& point_of, std::uint64_t key,
+                  const Monitor& monitor, std::vector<Comparison>& at) {
+  const Caustics& caustics = problem.lights.caustics;
+  if (caustics.legs.empty()) return;
+  for (std::uint64_t set = 0; set < (has_gathers ? 3 : 1); ++set) {
+    const auto legs = trace_caustics(problem, caustics.particles / 2, stream_key(key, kErrorCaustics, set), monitor);
+    const CausticIrradiance found =
+        caustic_irradiance(problem, legs, std::max<std::size_t>(1, caustics.legs_of_point / 8), at.size(), point_of);
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const double E = luminous_mean(found.E[k]);
+      if (set == 0) {
+        at[k].r += E;
+        at[k].std_error = std::sqrt(at[k].std_error * at[k].std_error + found.variance[k]);
+      } else {
+        (set == 1 ? at[k].gather : at[k].other_gather) += E;
+      }
+    }
+  }
+}
+
 /// Traces paths for references at the places of samples whose x is set, as many as the effort allows. Stopped by the
 /// monitor, it takes those that are there.
 ///
 /// problem  with other rays than those of the result.
-std::vector<Comparison> compare(const Problem& problem, const std::vector<Comparison>& samples, const PointOf& point_of,
-                                const Solution& solution, const ErrorEffort& effort, std::uint64_t key,
-                                const Monitor& monitor) {
+Compared compare(const Problem& whole, const std::vector<Comparison>& samples, const PointOf& point_of,
+                 const Solution& solution, const ErrorEffort& effort, std::uint64_t key, const Monitor& monitor) {
+  const WithoutCaustics apart(whole);
+  const Problem& problem = apart.problem();
   const Illumination light(problem);
+  const ReferencePaths kind(light, samples.size(), point_of, key, monitor);
+  std::string reference = kind.are_from_both_ends() ? "paths from both ends" : "paths";
+  if (!whole.lights.caustics.legs.empty()) reference += " and particles";
   // In parts, not by points: where paths have millions of bounces there are few points, and each takes a minute.
   const auto trace = [&](std::size_t count, std::uint64_t stream, int paths, const auto& sample_of) {
     std::vector<Spectrum> mean(count * kReplicates);
@@ -101,7 +137,8 @@ std::vector<Comparison> compare(const Problem& problem, const std::vector<Compar
           for (std::size_t t = from; t < to; ++t) {
             const std::size_t i = sample_of(t / kReplicates);
             const auto [p, n] = point_of(i);
-            mean[t] = trace_replicate(light, p, n, stream_key(stream, i), t % kReplicates, paths, rays, monitor);
+            mean[t] =
+                trace_replicate(kind.estimator(), p, n, stream_key(stream, i), t % kReplicates, paths, rays, monitor);
             finished[t] = !monitor.should_stop();
           }
           return rays;
@@ -122,7 +159,7 @@ std::vector<Comparison> compare(const Problem& problem, const std::vector<Compar
 
   const std::size_t step = samples.size() / kFewestPoints + 1, pilots = (samples.size() + step - 1) / step;
   const References pilot = trace(pilots, key + 1, kPilotPaths, [&](std::size_t k) { return k * step; });
-  if (!pilot.complete) return pilot.at;
+  if (!pilot.complete) return {pilot.at, reference};
   const double rays_per_path = static_cast<double>(pilot.rays) / static_cast<double>(pilots * kPilotPaths);
   const double affordable =  // paths in all
       std::max(kShareOfRays * static_cast<double>(solution.rays), effort.rays) / rays_per_path;
@@ -133,14 +170,17 @@ std::vector<Comparison> compare(const Problem& problem, const std::vector<Compar
   const auto count = std::min(samples.size(), wanted);
   const auto number_of = [&](std::size_t k) { return k * samples.size() / count; };
   References all = trace(count, key, paths, number_of);
-  if (all.at.size() < pilot.at.size()) return pilot.at;
+  if (all.at.size() < pilot.at.size()) return {pilot.at, reference};
   if (all.complete && solution.std_error.value.empty()) {
     const auto found = two_gathers(
         problem, solution, all.at.size(), [&](std::size_t k) { return point_of(number_of(k)); }, effort.gather, key,
         monitor);
+    if (!found.empty()) reference += ", with gathers";
     for (std::size_t k = 0; k < found.size(); ++k) all.at[k].gather = found[k][0], all.at[k].other_gather = found[k][1];
   }
-  return all.at;
+  add_caustics(
+      whole, all.complete, [&](std::size_t k) { return point_of(number_of(k)); }, key, monitor, all.at);
+  return {std::move(all.at), std::move(reference)};
 }
 
 /// Rooms with their area and what the result says of their light.

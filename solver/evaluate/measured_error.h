@@ -27,6 +27,7 @@ struct ErrorOfPart {
 };
 
 struct MeasuredError : ErrorFigures {
+  std::string reference{};           ///< what it was compared with, in words
   std::vector<ErrorOfPart> parts{};  ///< as PatchSet::rooms, or as the sets of sensors
   /// Whether a part counts by itself: it has a hundredth of all area at least, or is a set of sensors.
   bool counts(const ErrorOfPart& part) const;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "solver/gather/gather_point.h"
+#include "solver/illumination/caustic_light.h"
 #include "solver/model/parallel.h"
 
 namespace clerestory {
@@ -43,6 +44,12 @@ PointIrradiance gather_at(const Illumination& light, std::size_t count, const Po
     return rays;
   });
   result.done = blocks.done, result.rays = blocks.rays;
+  if (light.problem.lights.caustics.legs.empty()) return result;
+  const CausticIrradiance caustics = caustic_irradiance(light.problem, result.done, point_of, layers != nullptr);
+  for (std::size_t i = 0; i < result.done; ++i) {
+    result.E.add(i, caustics.E[i]);
+    if (layers) layers->add(caustics.rows[i], lanes_of(result.layers, i).data());
+  }
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "solver/gather/gather_point.h"
 #include "solver/gather/gather_time.h"
 #include "solver/hierarchy/feet.h"
+#include "solver/illumination/caustic_light.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
@@ -141,11 +142,40 @@ class Gatherer {
     const auto gather = [&](std::size_t p, LightRow& row, unsigned long long& rays) { gather_at(p, field, row, rays); };
     const auto take = [&](std::size_t p, LightRow& row, unsigned long long&) { take_light(p, field, row); };
     field.alike += alike.size();
-    return at_each(pilots, field, monitor, gather) && at_each(others, field, monitor, gather) &&
-           at_each(alike, field, monitor, take);
+    const bool complete = at_each(pilots, field, monitor, gather) && at_each(others, field, monitor, gather) &&
+                          at_each(alike, field, monitor, take);
+    if (!light_.problem.lights.caustics.legs.empty()) add_caustics(begin, field);
+    return complete;
   }
 
  private:
+  /// At points from that number on.
+  void add_caustics(std::size_t begin, VertexField& field) const {
+    const VertexLightmap& at = mesh_.points();
+    const std::uint32_t first = at.sample_begin[begin], count = at.sample_begin.back() - first;
+    const CausticIrradiance found = caustic_irradiance(
+        light_.problem, count,
+        [&](std::size_t k) {
+          const Vec3 n = at.sample_normal[first + k];
+          return ReceivingPoint{light_.problem.rays.off_surface(at.sample_position[first + k], n), n};
+        },
+        layers_ != nullptr);
+    for (std::size_t p = begin; p < field.known.size(); ++p) {
+      if (!field.known[p]) continue;
+      double variance = field.std_error[p] * field.std_error[p];
+      for (std::uint32_t s = at.sample_begin[p]; s < at.sample_begin[p + 1]; ++s) {
+        const double weight = at.sample_weight[s];
+        field.E.add(p, found.E[s - first] * weight), field.delta_light.add(p, found.E[s - first] * weight);
+        variance += weight * weight * found.variance[s - first];
+        if (!layers_) continue;
+        LightRow row = found.rows[s - first];
+        for (RowEntry& entry : row) entry.scale(Spectrum(weight));
+        for (Field* lanes : {&field.layers, &field.delta_layers}) layers_->add(row, lanes_of(*lanes, p).data());
+      }
+      field.std_error[p] = std::sqrt(variance);
+    }
+  }
+
   /// Of two points of one place on a flat face, no middles.
   bool takes_from_another(std::size_t p) const {
     if (p >= same_as_.size() || same_as_[p] == p) return false;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <numbers>
 
+#include "solver/illumination/caustic_legs.h"
 #include "solver/illumination/delta_light.h"
+#include "solver/illumination/one_light.h"
 #include "solver/illumination/sky_through_openings.h"
 #include "solver/lights/beam.h"
 #include "solver/lights/luminaire.h"
@@ -96,6 +98,16 @@ void balance_luminaires(const Problem& problem, std::span<const Beam> beams, Dir
   direct.rays += count * rays;
 }
 
+/// Caustics that land on patches: of luminaires and suns like all direct light.
+void add_caustics(const Problem& problem, std::vector<LightRow>& row_of_patch, DirectLight& direct) {
+  for (const auto& [patch, place, light, flux] : landings_of(problem, problem.lights.caustics.legs)) {
+    const Spectrum E = flux / problem.patches.area[patch];
+    direct.E.add(patch, E);
+    if (is_sun(problem.lights, light)) direct.energy.emitted += luminous_mean(flux);
+    if (!row_of_patch.empty()) add_to_row(row_of_patch[patch], light, E);
+  }
+}
+
 /// Rows of all patches in one, and what suns bring in.
 void keep(const Problem& problem, const std::vector<LightRow>& row_of_patch, DirectRows& rows) {
   const std::size_t luminaires = problem.lights.luminaires.size();
@@ -178,6 +190,7 @@ DirectLight direct_light(const Illumination& light, const DirectOptions& options
     });
   }
   for (const double flux : daylight) direct.energy.emitted += flux;
+  add_caustics(problem, row_of_patch, direct);
   if (has_openings) {
     direct.openings.begin.push_back(0);
     for (const auto& numbers : looked_at) {

@@ -73,6 +73,7 @@ class Walk {
 
   void note(const Turn& turn, double flux, const MirrorWay& way) {
     const double turned = flux * luminous_mean(turn.share);
+    if (turn.plane == kNoPlane && turn.is_mirror) return;  // particles go on from there: caustic_legs.h
     if (turn.plane == kNoPlane || way.count == MirrorWay::kMost) {
       lost += turned;
       return;

@@ -5,9 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "solver/illumination/one_light.h"
 #include "solver/lights/luminaire.h"
-#include "solver/lights/near_planes.h"
-#include "solver/lights/sun.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/sampling/unit_square.h"
@@ -35,8 +34,6 @@ struct Cone {
     return Frame(axis).to_world(t * c * std::cos(2 * kPi * v), t * c * std::sin(2 * kPi * v), c);
   }
 };
-
-double sun_power(const PlacedSun& sun) { return sun.share * luminous_mean(sun.normal_irradiance); }
 
 }  // namespace
 
@@ -104,21 +101,15 @@ class GlossLight::Look {
     const Vec3& d = hit.direction(ray);
     const Lobe* lobe = rays_.lobe(hit.triangle, d);
     if (!lobe) return {};
-    const Vec3 front = rays_.normal(hit.triangle), n = dot(front, d) < 0 ? front : -front;
+    const Vec3 front = rays_.normal(hit.triangle);
+    const bool on_front = dot(front, d) < 0;
+    if (all_.leaves_narrow_ && rays_.gloss().narrow_without_plane(hit.triangle, on_front ? kFront : kBack)) return {};
+    const Vec3 n = on_front ? front : -front;
     const Vec3 x = rays_.off_surface(rays_.in_plane_of(hit.triangle, hit.position(ray)), n);
     return Place{x, n, -d, lobe, rays_.gloss().plane(hit.triangle)};
   }
 
-  const std::vector<PlacedLuminaire>& luminaires() const { return problem_.lights.luminaires; }
-  bool is_sun(std::uint32_t light) const { return light >= luminaires().size(); }
-  const PlacedSun& sun(std::uint32_t light) const { return problem_.lights.suns[light - luminaires().size()]; }
-
-  /// Where its light comes from: of a luminaire the place, of a sun the direction to it.
-  Vec3 point_of(std::uint32_t light, double u, double v) const {
-    if (is_sun(light)) return direction_to_sun(sun(light), u, v);
-    const PlacedLuminaire& luminaire = luminaires()[light];
-    return light_point(luminaire, luminaire.position, u, v);  // a glossy place may be near it and the receiver far
-  }
+  Vec3 point_of(std::uint32_t light, double u, double v) const { return point_of_light(problem_.lights, light, u, v); }
 
   /// Of at_an_image() that a ray goes along d, the light being that one and its light coming from `point`.
   double density_by_image(const Place& place, std::uint32_t light, const Vec3& point, const Vec3& d) const {
@@ -135,7 +126,7 @@ class GlossLight::Look {
     const GlossySides::Plane& plane = rays_.gloss().planes()[image.plane];
     const double height = plane.place.height(p_);
     const double spread = 2 / std::max(1.0, plane.sharpness);
-    if (is_sun(image.light)) {
+    if (is_sun(problem_.lights, image.light)) {
       if (!(dot(plane.place.normal, point) * height > 0)) return {};
       return Cone{plane.place.image_of_direction(point), spread};
     }
@@ -146,22 +137,11 @@ class GlossLight::Look {
   }
 
   void take(const Place& place, std::uint32_t light, const Vec3& point, const Spectrum& weight) {
-    const auto over = [&](const Vec3& from, const Vec3& to, const MirrorWay& way) {
-      return way.empty() ? rays_.transmittance(from, to) : rays_.transmittance_by_mirrors(from, to, way);
-    };
-    const Vec3 to_light = is_sun(light) ? point : normalized(point - place.x);
-    const Spectrum irradiance = is_sun(light) ? sun(light).normal_irradiance * std::max(0.0, dot(place.n, to_light))
-                                              : open_irradiance(luminaires()[light], point, place.x, place.n);
+    const auto [to_light, irradiance] = light_from_point(problem_, light, point, place.x, place.n);
     if (irradiance.is_black()) return;
-    Spectrum passes(1.0);
-    if (is_sun(light)) {
-      passes = over(place.x, place.x + to_light * (4 * rays_.diameter()), sun(light).way);
-    } else if (const ShadowSegment way = shadow_segment(luminaires()[light], point, place.x); !way.is_free) {
-      passes = over(way.from, way.to, luminaires()[light].way);
-    }
-    const Spectrum found = place.lobe->evaluate(place.n, to_light, place.to_receiver) * irradiance * passes * weight;
+    const Spectrum found = place.lobe->evaluate(place.n, to_light, place.to_receiver) * irradiance * weight;
     if (found.is_black()) return;
-    (is_sun(light) ? E_.suns : E_.luminaires) += found;
+    (is_sun(problem_.lights, light) ? E_.suns : E_.luminaires) += found;
     if (row_) row_->push_back(RowEntry::of_light(light, found));
   }
 
@@ -173,17 +153,11 @@ class GlossLight::Look {
   GlossIrradiance E_;
 };
 
-GlossLight::GlossLight(const Problem& problem) : problem_(problem) {
+GlossLight::GlossLight(const Problem& problem)
+    : problem_(problem), leaves_narrow_(!problem.lights.caustics.sides.empty()) {
   const Lights& lights = problem.lights;
   if (!problem.rays.has_gloss() || (lights.luminaires.empty() && lights.suns.empty())) return;
-  std::vector<LightBounds> luminaires;
-  for (const PlacedLuminaire& luminaire : lights.luminaires) {
-    luminaires.push_back(bounds(luminaire));
-    luminaires.back().power *= luminaire.share;
-  }
-  std::vector<LightChoice::Sun> suns;
-  for (const PlacedSun& sun : lights.suns) suns.push_back({sun.direction, sun_power(sun)});
-  lights_ = LightChoice(luminaires, suns, problem.rays.diameter());
+  lights_ = choice_of_lights(problem);
 
   std::vector<LightBounds> image_luminaires;
   std::vector<LightChoice::Sun> image_suns;
@@ -196,7 +170,8 @@ GlossLight::GlossLight(const Problem& problem) : problem_(problem) {
       image_luminaires.back().power *= lights.luminaires[k].share;
     }
     for (const PlacedSun& sun : lights.suns)
-      image_suns.push_back({planes[g].place.image_of_direction(sun.direction), sun_power(sun)});
+      image_suns.push_back(
+          {planes[g].place.image_of_direction(sun.direction), sun.share * luminous_mean(sun.normal_irradiance)});
   }
   images_ = LightChoice(image_luminaires, image_suns, problem.rays.diameter());
 }

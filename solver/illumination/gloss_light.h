@@ -25,8 +25,8 @@ struct GlossIrradiance {
 ///   E = integral over the directions d of cos(d) L(d),   L = f(from the light, to the receiver) E_light at the place
 /// The first kind also follows what panes turn back and lobes send on, to glossy surfaces behind. Both are unbiased;
 /// but what the first finds alone is the noisier the narrower the lobe, and of one narrower than its rays can tell
-/// nothing is found in practice: gloss behind gloss, mirrors or panes, and gloss in more than 64 planes, curved
-/// surfaces among them.
+/// nothing is found in practice: gloss behind gloss, mirrors or panes. Where Lights::caustics are known, light that
+/// meets a narrow lobe in none of the 64 planes first is theirs, and left out here.
 class GlossLight {
  public:
   /// problem  outlives this.
@@ -56,6 +56,7 @@ class GlossLight {
   class Look;
 
   const Problem& problem_;
+  bool leaves_narrow_;  ///< lobes of no plane, which particles follow (Lights::caustics)
   LightChoice lights_, images_;
   std::uint32_t planes_with_images_ = 0;
 };

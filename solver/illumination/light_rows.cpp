@@ -25,6 +25,15 @@ RowEntry RowEntry::of_light(std::size_t number, const Spectrum& weight) {
   return entry(kLight | static_cast<std::uint32_t>(number), weight);
 }
 
+void add_to_row(LightRow& row, std::size_t light, const Spectrum& E) {
+  for (RowEntry& entry : row)
+    if (entry.is_of_light() && entry.number() == light) {
+      for (std::size_t c = 0; c < entry.weight.size(); ++c) entry.weight[c] += static_cast<float>(E.c[c]);
+      return;
+    }
+  row.push_back(RowEntry::of_light(light, E));
+}
+
 RowLight::RowLight(std::span<const Layer> layers, int channels, const Field& B)
     : channels_(channels), lanes_(layers.size() * static_cast<std::size_t>(channels)), B_(B) {
   for (const Layer& layer : layers) {

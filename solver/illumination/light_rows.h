@@ -34,6 +34,8 @@ struct RowEntry {
   }
 };
 using LightRow = std::vector<RowEntry>;
+/// Adds what that luminaire or sun gives to its entry, or to a new one.
+void add_to_row(LightRow& row, std::size_t light, const Spectrum& E);
 
 /// Rows of N receivers, one after another.
 struct LightRows {

@@ -6,8 +6,34 @@
 
 namespace clerestory {
 
+namespace {
+
+/// Legs of the light that is there at time t: of suns those of its own, as strong as they are then.
+std::vector<CausticLeg> legs_at(const Lights& mean, std::size_t t) {
+  const std::size_t luminaires = mean.luminaires.size();
+  std::vector<std::uint32_t> number(mean.suns.size(), CausticLeg::kNone);  // among the suns of the time
+  std::uint32_t count = 0;
+  for (std::size_t k = 0; k < mean.suns.size(); ++k)
+    if (!mean.suns[k].time || *mean.suns[k].time == t) number[k] = count++;
+  std::vector<CausticLeg> legs;
+  for (CausticLeg leg : mean.caustics.legs) {
+    if (leg.light >= luminaires) {
+      const std::size_t k = leg.light - luminaires;
+      if (number[k] == CausticLeg::kNone) continue;
+      if (mean.suns[k].time)
+        for (float& flux : leg.flux) flux *= static_cast<float>(mean.times);
+      leg.light = static_cast<std::uint32_t>(luminaires) + number[k];
+    }
+    legs.push_back(leg);
+  }
+  return legs;
+}
+
+}  // namespace
+
 Lights lights_at(const Lights& mean, std::size_t t) {
   Lights lights = mean;
+  lights.caustics.legs = legs_at(mean, t);
   lights.sky = sky_at(mean.sky, t);
   lights.suns = suns_at(mean.suns, mean.times, t);
   lights.times = 1;

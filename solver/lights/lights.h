@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/lights/caustic_leg.h"
 #include "solver/model/light_spec.h"
 #include "solver/visibility/mirror_planes.h"
 
@@ -56,9 +57,11 @@ struct LightArea {
 struct Lights {
   std::vector<PlacedLuminaire> luminaires;  ///< the scene's, then images
   std::optional<Sky> sky;
-  std::vector<PlacedSun> suns;      ///< the scene's, then images
-  std::size_t times = 1;            ///< as of LightSpec
-  double lost_in_mirrors = 0;       ///< about the share of luminaires' and suns' light on ways that have no image [1]
+  std::vector<PlacedSun> suns;  ///< the scene's, then images
+  std::size_t times = 1;        ///< as of LightSpec
+  double lost_in_mirrors =
+      0;              ///< about the share of luminaires' and suns' light on ways that have no image, caustics apart [1]
+  Caustics caustics;  ///< what turns their light and shows no image; empty: there is no such thing
   std::vector<LightArea> openings;  ///< found by find_openings(); sky without any is right as well, only noisier
 
   /// Those through which the sky is seen: they come first.

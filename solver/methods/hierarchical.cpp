@@ -10,6 +10,7 @@
 #include "solver/hierarchy/balance.h"
 #include "solver/hierarchy/bf_refine.h"
 #include "solver/hierarchy/build_tree.h"
+#include "solver/hierarchy/caustic_edges.h"
 #include "solver/hierarchy/debug_view.h"
 #include "solver/hierarchy/refine.h"
 #include "solver/hierarchy/shadow_edges.h"
@@ -342,6 +343,9 @@ HierarchicalSolution hierarchical(const Problem& problem, ElementMesh& mesh, con
     const RefineOptions how{options.tolerance, options.shortest_edge, options.most_elements, options.seed};
     const std::size_t halved = refine(mesh, Illumination(on_leaves, glow), last->result.solution.E,
                                       last->result.solution.B, how, rays, monitor);
+    const std::size_t at_caustics =
+        halve_at_caustics(mesh, on_leaves, last->element, last->result.solution.E, how, monitor);
+    if (at_caustics > 0) log.push_back(name + ": " + std::to_string(at_caustics) + " halved at caustics");
     log.push_back(name + ": " + std::to_string(halved) + " halved, " + std::to_string(mesh.leaf_count()) + " elements");
     // Halves know no more of the light than the element they came from did: nodes must not take them for alike.
     const double worth_another =

@@ -56,7 +56,13 @@ Solution path_trace(const Problem& problem, const PathEstimator& estimator, std:
   solution.energy = direct.energy;
   solution.energy.emitted += total_flux(patches, patches.M);
   solution.rays = direct.rays + closure.rays;
-  for (std::size_t i = 0; i < n; ++i) solution.E.set(i, sums[i].count > 0 ? sums[i].mean() : direct.E[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (sums[i].count == 0) {
+      solution.E.set(i, direct.E[i]);
+      continue;
+    }
+    solution.E.set(i, options.caustics ? sums[i].mean() + (*options.caustics)[i] : sums[i].mean());
+  }
   for (std::size_t i = 0; i < n; ++i) {
     const Spectrum B = patches.M[i] + patches.scattered(solution.E, i);
     solution.B.set(i, B);

@@ -14,6 +14,7 @@ namespace clerestory {
 struct PathOptions {
   int paths = 256;  ///< from each patch or point
   std::uint64_t seed = 1;
+  const Field* caustics = nullptr;  ///< null, or N x channels: irradiance that paths do not find, added [W/m2]
 };
 
 /// Mean irradiance of every patch from paths that start all over it, and its standard error. Paths are added in rounds,

@@ -111,16 +111,22 @@ std::vector<Landing> send_photons(const Illumination& light, std::size_t particl
   return photons;
 }
 
-Spectrum irradiance(const PhotonMap& map, const PatchSet& patches, const Vec3& p, const Vec3& n, std::size_t count,
-                    double radius, std::vector<PhotonMap::Neighbour>& found) {
-  const double within = map.nearest(
-      p, radius, count, found, [&](const Landing& photon) { return dot(patches.normal[photon.patch], n) > kAlike; });
-  Spectrum flux(0.0);
-  for (const PhotonMap::Neighbour& at : found) {
-    const auto& [r, g, b] = map[at.photon].flux;
-    flux += Spectrum(double{r}, double{g}, double{b}) * (1 - double{at.distance2} / within);
+Spectrum irradiance(const PhotonMap& map, const SmoothSurface& surface, const Vec3& p, PatchId patch, std::size_t count,
+                    double radius, PhotonsAround& room) {
+  const Vec3& n = surface.patches().normal[patch];
+  const double within = map.nearest(p, radius, count, room.found, [&](const Landing& photon) {
+    return dot(surface.patches().normal[photon.patch], n) > kAlike;
+  });
+  if (room.found.empty()) return Spectrum(0.0);
+  const SurfaceKernel kernel =
+      surface.kernel(p, {&patch.value, 1}, std::sqrt(within), KernelShape::epanechnikov, room.parts);
+  Spectrum E(0.0);
+  for (const PhotonMap::Neighbour& at : room.found) {
+    const Landing photon = map[at.photon];
+    const auto& [r, g, b] = photon.flux;
+    E += Spectrum(double{r}, double{g}, double{b}) * kernel.weight(photon.position, 0);
   }
-  return flux / (std::numbers::pi * within / 2);
+  return {std::max(0.0, E[0]), std::max(0.0, E[1]), std::max(0.0, E[2])};
 }
 
 }  // namespace clerestory

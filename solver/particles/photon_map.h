@@ -10,6 +10,7 @@
 
 #include "solver/model/monitor.h"
 #include "solver/particles/landings.h"
+#include "solver/particles/surface_kernels.h"
 
 namespace clerestory {
 
@@ -70,13 +71,15 @@ class PhotonMap {
 std::vector<Landing> send_photons(const Illumination& light, std::size_t particles, std::span<const ParticleWay> ways,
                                   std::uint64_t seed, const Monitor& monitor = {});
 
-/// Irradiance [W/m2] at point p of a surface with unit normal n: of the `count` landings nearest within `radius` on
-/// patches that face as it does, weighted by 1 - (r / R)^2, R that of the farthest, which itself does not count. Where
-/// the surface ends within R it is too dark; surface_kernels.h knows that.
-///
-/// found  room that is used again.
-Spectrum irradiance(const PhotonMap& map, const PatchSet& patches, const Vec3& p, const Vec3& n, std::size_t count,
-                    double radius, std::vector<PhotonMap::Neighbour>& found);
+/// Room that look-ups use again.
+struct PhotonsAround {
+  std::vector<PhotonMap::Neighbour> found;
+  std::vector<SurfaceKernel::Part> parts;
+};
+/// Irradiance [W/m2] at point p of a patch: of the `count` landings nearest within `radius` on patches that face as it
+/// does, by the kernel 1 - (r / R)^2 over the smooth surface around p, R the distance of the farthest.
+Spectrum irradiance(const PhotonMap& map, const SmoothSurface& surface, const Vec3& p, PatchId patch, std::size_t count,
+                    double radius, PhotonsAround& room);
 
 template <class Counts>
 double PhotonMap::nearest(const Vec3& p, double radius, std::size_t count, std::vector<Neighbour>& found,

@@ -22,6 +22,8 @@ constexpr Effort kDraft{
     .vertex_tolerance = 0.1,
     .shortest_edge = 1.0 / 4,
     .most_points = 100'000,
+    .caustic_particles = 131072,
+    .caustic_legs = 800,
     .vertices = {.bundle = {8, 64, 64}, .area = {0, 1, 0.02, 128}, .bright_rays = 32, .sun_rays = 8},
     .sensors = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16, .noise = 0.1},
     .gathers_vertices = false,
@@ -46,6 +48,8 @@ constexpr Effort kStandard{
     .vertex_tolerance = 0.05,
     .shortest_edge = 1.0 / 8,
     .most_points = 400'000,
+    .caustic_particles = 524288,
+    .caustic_legs = 1600,
     .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 32, .sun_rays = 16, .noise = 0.1},
     .sensors =
         {.bundle = {16, 256, 2048}, .area = {2, 6, 0.003, 8192}, .bright_rays = 256, .sun_rays = 32, .noise = 0.05},
@@ -83,6 +87,8 @@ constexpr Effort kFine{
     .vertex_tolerance = 0.035,
     .shortest_edge = 1.0 / 16,
     .most_points = 1'600'000,
+    .caustic_particles = 2097152,
+    .caustic_legs = 3200,
     .vertices =
         {.bundle = {16, 512, 2048}, .area = {1, 4, 0.005, 2048}, .bright_rays = 128, .sun_rays = 32, .noise = 0.05},
     .sensors =
@@ -116,6 +122,7 @@ Effort effort(Accuracy accuracy, int times) {
     *rays <<= times;
   e.rays_per_patch = std::ldexp(e.rays_per_patch, times);
   e.particles = std::ldexp(e.particles, times);
+  e.caustic_particles = std::ldexp(e.caustic_particles, times);
   e.vertex_tolerance *= std::pow(kTighterEdge, times);
   tighten(e.vertices, times);
   tighten(e.sensors, times);

@@ -34,6 +34,10 @@ struct Effort {
   double shortest_edge;          ///< / longest edge: below it nothing is halved [1]
   std::size_t most_points;       ///< gathered
 
+  // Caustics.
+  double caustic_particles;  ///< sent at all that shows no image of a light
+  double caustic_legs;       ///< that tell the irradiance at a point
+
   // Final gathers.
   GatherQuality vertices, sensors;
   bool gathers_vertices;  ///< of the other methods; else vertices are means of their elements

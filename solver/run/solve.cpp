@@ -8,6 +8,8 @@
 
 #include "solver/gather/gather.h"
 #include "solver/gather/gather_time.h"
+#include "solver/illumination/caustic_legs.h"
+#include "solver/illumination/caustic_light.h"
 #include "solver/illumination/direct.h"
 #include "solver/illumination/near_luminaires.h"
 #include "solver/methods/form_factor_matrix.h"
@@ -26,6 +28,7 @@
 #include "solver/paths/bidirectional.h"
 #include "solver/paths/find_slit_gains.h"
 #include "solver/paths/path_tracer.h"
+#include "solver/paths/without_caustics.h"
 #include "solver/run/accuracy.h"
 #include "solver/run/check_laws.h"
 #include "solver/run/level_in_time.h"
@@ -186,16 +189,29 @@ auto with_paths(const Illumination& light, Method method, const Use& use) {
   return use(both.estimator());
 }
 
+/// Of the receivers themselves, which paths do not find.
+void add_caustics(const Problem& problem, const PointOf& point_of, PointIrradiance& at) {
+  const CausticIrradiance found = caustic_irradiance(problem, at.done, point_of);
+  for (std::size_t i = 0; i < at.done; ++i) {
+    at.E.add(i, found.E[i]);
+    for (int c = 0; c < at.E.channels; ++c)
+      at.std_error.at(i, c) = std::hypot(at.std_error.at(i, c), std::sqrt(found.variance[i]));
+  }
+}
+
 /// Irradiance at places by the method of the solution.
 PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, std::size_t count,
                               const PointOf& point_of, const GatherQuality& quality, int paths, Stream stream,
                               std::string_view stage, const SolveOptions& options, const Monitor& monitor,
                               const RowLight* layers = nullptr) {
   if (is_by_paths(options.method)) {
-    const Illumination light(problem);
-    return with_paths(light, options.method, [&](const PathEstimator& estimator) {
+    const WithoutCaustics apart(problem);
+    const Illumination light(options.method == Method::path ? apart.problem() : problem);
+    PointIrradiance at = with_paths(light, options.method, [&](const PathEstimator& estimator) {
       return trace_paths_at(estimator, count, point_of, paths, stream_key(options.seed, stream), stage, monitor);
     });
+    if (options.method == Method::path) add_caustics(problem, point_of, at);
+    return at;
   }
   return gather_at(gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor), count,
                    point_of, GatherPattern(quality, options.seed), stage, monitor, layers);
@@ -247,11 +263,16 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
   if (is_by_paths(options.method) || options.method == Method::progressive) {
     const Closure of_patches = closure();
     monitor.say_result();  // direct light, and an estimate of what follows from it
-    if (is_by_paths(options.method))
-      return with_paths(light, options.method, [&](const PathEstimator& estimator) {
+    if (is_by_paths(options.method)) {
+      const WithoutCaustics apart(problem);
+      const bool adds_caustics = options.method == Method::path && !problem.lights.caustics.legs.empty();
+      const Field caustics = adds_caustics ? caustics_on_patches(problem, problem.lights.caustics.legs) : Field{};
+      const Illumination of_paths(adds_caustics ? apart.problem() : problem);
+      return with_paths(of_paths, options.method, [&](const PathEstimator& estimator) {
         return path_trace(problem, estimator, kMethodNames[static_cast<std::size_t>(options.method)], direct,
-                          of_patches, {e.paths, options.seed}, monitor);
+                          of_patches, {e.paths, options.seed, adds_caustics ? &caustics : nullptr}, monitor);
       });
+    }
     constexpr double kFewestRays = 64;  // a patch met by fewer is known to worse than 12 %
     Solution solution =
         shoot(problem, direct, of_patches,

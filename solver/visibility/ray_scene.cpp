@@ -331,6 +331,12 @@ bool RayScene::has_gloss() const { return !impl_->glossy.empty(); }
 const GlossySides& RayScene::gloss() const { return impl_->glossy; }
 Vec3 RayScene::normal(TriangleId t) const { return impl_->unit_normal(t); }
 Vec3 RayScene::in_plane_of(TriangleId t, const Vec3& x) const { return impl_->in_plane_of(t, x); }
+std::array<double, 2> RayScene::barycentric(TriangleId t, const Vec3& x) const {
+  const Vec3 a = impl_->corner(t, 0), ab = impl_->corner(t, 1) - a, ac = impl_->corner(t, 2) - a, n = cross(ab, ac);
+  const double per_area = 1 / dot(n, n);
+  return {std::clamp(dot(n, cross(x - a, ac)) * per_area, 0.0, 1.0),
+          std::clamp(dot(n, cross(ab, x - a)) * per_area, 0.0, 1.0)};
+}
 const Lobe* RayScene::lobe(TriangleId t, const Vec3& direction) const { return impl_->lobe(t, direction); }
 bool RayScene::has_glass() const { return !impl_->glass.of_primitive.empty(); }
 double RayScene::lift() const { return lift_share_ * kLift * impl_->diameter; }
@@ -430,6 +436,19 @@ Hit RayScene::first_hit(const PatchSet& patches, const Ray& ray, Echo* echo) con
   return hit;
 }
 
+Hit RayScene::first_leg(const PatchSet& patches, const Ray& ray, Echo& echo) const {
+  echo = {};
+  EchoChoice choice(ray, &echo);
+  const Hit hit = impl_->one_leg(patches, ray, {&choice, Spectrum(1.0), lift_share_});
+  if (const TurningPlanes::Mirror* mirror = has_mirrors() ? impl_->turning.mirror_at(hit.triangle) : nullptr)
+    choice.offer({mirror->plane, hit.transmittance * mirror->reflectance,
+                  impl_->turned(ray.origin, ray.direction, hit.distance, mirror->normal, impl_->corner(hit.triangle, 0),
+                                lift_share_)});
+  if (!leaves_gloss_) impl_->offer_gloss(ray, hit, lift_share_, choice);
+  choice.finish();
+  return hit;
+}
+
 double RayScene::first_surface(const Ray& ray) const { return impl_->first_surface(ray).distance; }
 
 std::uint16_t RayScene::meets_glass(const SegmentPacket& s, std::uint16_t active) const {
@@ -516,11 +535,12 @@ std::vector<Turn> RayScene::turns(const Ray& ray) const {
       ray.origin, ray.direction, end.distance, is_tight(ray.origin), [&](double distance, TriangleId pane) {
         const GlassTable& kind = impl_->glass_of(pane);
         const double cosine = dot(impl_->unit_normal(pane), ray.direction);
-        found.push_back({impl_->turning.glass_plane[pane], share * kind.reflectance(cosine), turned(distance, pane)});
+        found.push_back(
+            {impl_->turning.glass_plane[pane], share * kind.reflectance(cosine), turned(distance, pane), false});
         share *= kind.transmittance(cosine);
       });
   if (const TurningPlanes::Mirror* mirror = has_mirrors() ? impl_->turning.mirror_at(end.triangle) : nullptr)
-    found.push_back({mirror->plane, share * mirror->reflectance, turned(end.distance, end.triangle)});
+    found.push_back({mirror->plane, share * mirror->reflectance, turned(end.distance, end.triangle), true});
   return found;
 }
 

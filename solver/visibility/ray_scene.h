@@ -61,6 +61,7 @@ struct Turn {
   std::uint32_t plane;  ///< its number in RayScene::mirrors(), or kNoPlane
   Spectrum share;       ///< of the ray that goes on along `ray`
   Ray ray;
+  bool is_mirror;
 };
 
 /// Sixteen segments for one packet, as separate coordinates; both ends already off their surfaces.
@@ -97,6 +98,10 @@ class RayScene {
   void first_hits(const PatchSet& patches, std::span<const Ray> rays, std::span<Hit> hits,
                   std::span<Echo> echoes = {}) const;
 
+  /// The same without following mirrors: a ray ends on one as on anything, and what that sends on is one of the ways
+  /// that the echo is chosen among. Hit::patch of a mirror is invalid.
+  Hit first_leg(const PatchSet& patches, const Ray& ray, Echo& echo) const;
+
   /// Distance to the first surface that is not glass; infinite when there is none [m].
   double first_surface(const Ray& ray) const;
 
@@ -129,6 +134,8 @@ class RayScene {
   Vec3 normal(TriangleId t) const;
   /// The place of its plane that x is nearest to: rays in float hit it only nearly.
   Vec3 in_plane_of(TriangleId t, const Vec3& x) const;
+  /// Weights of its corners 1 and 2 at x, each in [0, 1].
+  std::array<double, 2> barycentric(TriangleId t, const Vec3& x) const;
   /// Of the side that a ray along `direction` (unit) met in t; null: that is not glossy.
   const Lobe* lobe(TriangleId t, const Vec3& direction) const;
   /// The planes of mirrors, no more than 64 of them, then those of glass, the 64 of largest area: rays are reflected by

@@ -8,9 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include "meshing/make_lightmap.h"
 #include "solver/model/parallel.h"
 #include "solver/model/random_stream.h"
 #include "solver/model/units.h"
+#include "tests/support/joined_vertices.h"
 #include "tests/support/lit_patches.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
@@ -163,17 +165,25 @@ TEST(Photons, TellTheIrradianceAroundAPoint) {
   b.rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 4, 4).rectangle({-1, -1, 0.01}, {0, 2, 0}, {0, 0, 1});
   Lights lights;
   lights.luminaires.push_back(test::point_lamp({0, 0, 1}, 4 * std::numbers::pi * 10));
-  const test::LitPatches scene(b.build(), std::move(lights));
+  const test::LitPatches scene(test::joined(b.build()), std::move(lights));
   const Illumination light(scene.problem);
   const PhotonMap map(send_photons(light, 1'000'000, kAll, 1));
-  Neighbours found;
-  // E = 10 (1 + r^2)^(-3/2). A disc of 1000 landings has a radius of 0.06 m; weighted they are worth 750.
-  for (const double r : {0.0, 0.3, 0.7}) {
-    const double E = 10 * std::pow(1 + r * r, -1.5);
-    EXPECT_NEAR(irradiance(map, scene.patches, {r, 0, 0}, {0, 0, 1}, 1000, 1, found)[0], E, 4 * E / std::sqrt(750.0));
+  const VertexLightmap points = make_lightmap(scene.patches);
+  const SmoothSurface surface(scene.patches, points);
+  PhotonsAround room;
+  const auto at = [&](const Vec3& p, double radius) {
+    const Hit below = scene.rays.first_hit(scene.patches, {p + Vec3{0, 0, 0.005}, {0, 0, -1}});
+    return irradiance(map, surface, p, below.patch, 1000, radius, room)[0];
+  };
+  // E = 10 (1 + r^2)^(-3/2). A disc of 1000 landings has a radius of 0.06 m; weighted they are worth 750. At an edge and
+  // in a corner they lie farther away, and a slope counts.
+  for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{0.3, 0, 0}, Vec3{0.7, 0, 0}, Vec3{0.2, 0.999, 0}, Vec3{0.999, -0.999, 0}}) {
+    const double E = 10 * std::pow(1 + p.x * p.x + p.y * p.y, -1.5);
+    const bool at_edge = std::abs(p.y) > 0.9;
+    EXPECT_NEAR(at(p, 1), E, (at_edge ? 12 : 4) * E / std::sqrt(750.0)) << p.x << " " << p.y;
   }
-  EXPECT_EQ(irradiance(map, scene.patches, {0, 0, 0}, {0, 0, -1}, 1000, 1, found)[0], 0);
-  EXPECT_EQ(irradiance(PhotonMap(), scene.patches, {0, 0, 0}, {0, 0, 1}, 1000, 1, found)[0], 0);
+  EXPECT_EQ(at({0, 0, 0}, 1e-6), 0);
+  EXPECT_EQ(irradiance(PhotonMap(), surface, {0, 0, 0}, PatchId{0}, 1000, 1, room)[0], 0);
 }
 
 }  // namespace

@@ -1,0 +1,43 @@
+#pragma once
+// Caustics: particles over surfaces that turn the light of luminaires and suns and show no image of them.
+
+#include <cstdint>
+#include <vector>
+
+#include "solver/illumination/problem.h"
+#include "solver/model/monitor.h"
+
+namespace clerestory {
+
+/// The problem's caustics, from so many particles. Their sides are those of mirrors whose plane has no number
+/// (RayScene::plane_of), and of gloss that is narrow and in no plane that lights have images in: curved ones. Empty
+/// where there are none, or no luminaire or sun.
+///
+/// problem  whose triangles are those of the rays.
+Caustics find_caustics(const Problem& problem, std::size_t particles, std::size_t legs_of_point, std::uint64_t seed,
+                       const Monitor& monitor = {});
+
+/// Sends particles from the lights, images among them, to the sides of Lights::caustics, and follows each over all that
+/// turns it, by one way where there are several, until it ends on what scatters it alone or by roulette. Light that
+/// meets anything else first is not among them: images and rays at gloss find it. So all light is found once.
+///
+/// key      of the random numbers.
+/// returns  legs whose flux is a particle's share of the light, in the order of the particles; none when the monitor
+///          stopped it. Threads: same bits for any thread count. Cost: 2 to 4 us a particle and core.
+std::vector<CausticLeg> trace_caustics(const Problem& problem, std::size_t particles, std::uint64_t key,
+                                       const Monitor& monitor = {});
+
+/// Flux that arrives at a patch [W].
+struct CausticLanding {
+  PatchId patch;
+  Vec3 place;           ///< local frame [m]
+  std::uint32_t light;  ///< as in CausticLeg
+  Spectrum flux;
+};
+/// Where legs end on patches of the problem, in the order of the legs.
+std::vector<CausticLanding> landings_of(const Problem& problem, const std::vector<CausticLeg>& legs);
+
+/// Irradiance of each patch by them, N x channels [W/m2].
+Field caustics_on_patches(const Problem& problem, const std::vector<CausticLeg>& legs);
+
+}  // namespace clerestory

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "solver/model/random_stream.h"
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
+#include "solver/sampling/unit_square.h"
 #include "solver/view/sample_pattern.h"
 
 namespace clerestory {
@@ -22,6 +24,7 @@ constexpr int kMostTurns = 16;
 // Dim reflections are seen by one ray of four, which stands for all.
 constexpr double kDim = 0.2;
 constexpr int kOneOf = 4, kStandsForSome = -1;
+constexpr std::uint32_t kGlossRays = 4;  // of a place that is seen, where its light is found by rays
 
 /// Panes that the field is seen in: mirrors, and glass where light is shown.
 std::vector<std::uint32_t> panes_that_show(const WrittenResult& result, bool is_radiance) {
@@ -63,6 +66,27 @@ ShownField radiance_of(const WrittenResult& result) {
   return field;
 }
 
+ShownField radiance_of(const WrittenResult& result, const Field& E) {
+  const WrittenArray &B = result.of_points.at("radiosity"), &all = result.of_points.at("irradiance");
+  ShownField field{B.components, B.value, true};
+  std::vector<std::uint32_t> material(result.points.size());  // points are not shared across materials
+  for (std::size_t t = 0; t < result.triangles.size(); ++t)
+    for (const std::uint32_t p : result.triangles[t]) material[p] = result.material[t];
+  for (std::size_t i = 0; i < field.of_points.size(); ++i) {
+    const std::size_t point = i / static_cast<std::size_t>(B.components);
+    const double rho = result.materials[material[point]].reflectance[static_cast<int>(i % static_cast<std::size_t>(B.components))];
+    const double less = double{B.value[i]} - rho * (double{all.value[i]} - E.value[i]);
+    field.of_points[i] = static_cast<float>(std::max(0.0, less) / std::numbers::pi);
+  }
+  return field;
+}
+
+ShownField illuminance_of(const Field& E) {
+  ShownField field{1, {}, false};
+  for (std::size_t i = 0; i < E.size(); ++i) field.of_points.push_back(static_cast<float>(photometric(E[i])));
+  return field;
+}
+
 ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<std::uint32_t> triangles)
     : result_(result),
       field_(std::move(field)),
@@ -89,8 +113,9 @@ ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<
       lobe_of_material_.push_back(material.is_glossy() ? static_cast<int>(lobes_.size()) : -1);
       if (material.is_glossy()) lobes_.emplace_back(*material.gloss);
     }
-    for (const std::uint32_t i : triangles) material_.push_back(result.material[i]);
   }
+  material_.reserve(triangles.size());
+  for (const std::uint32_t i : triangles) material_.push_back(result.material[i]);
   const auto n = static_cast<std::size_t>(field_.channels);
   corner_values_.reserve(3 * n * triangles_.size());
   for (const auto& corners : triangles_)
@@ -98,33 +123,37 @@ ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<
       for (std::size_t k = 0; k < n; ++k) corner_values_.push_back(field_.of_points[corner * n + k]);
 }
 
-/// A square of the picture, on one thread.
-class ViewScene::Tile {
+/// Rays and what becomes of them, on one thread: those of a square of the picture, or those that look around.
+class ViewScene::Ways {
  public:
-  Tile(const ViewScene& scene, const Camera& local, const ViewOptions& options,
-       const std::vector<std::array<double, 2>>& pattern, ViewImage& image)
+  /// count  rays a pixel.
+  Ways(const ViewScene& scene, const ViewOptions& options, std::size_t count, bool looks_around = false)
       : scene_(scene),
-        camera_(local),
         options_(options),
-        pattern_(pattern),
-        image_(image),
-        channels_(scene.field_.channels) {}
+        count_(count),
+        looks_around_(looks_around),
+        channels_(scene.field_.channels) {
+    if (options.fine && options.gather > 0)
+      inner_ = std::make_unique<Ways>(*options.around, kLooksAround, static_cast<std::size_t>(options.gather), true);
+  }
 
-  void trace(int x0, int y0, int x1, int y1) {
-    width_ = x1 - x0;
-    const auto pixels = static_cast<std::size_t>(width_ * (y1 - y0));
-    sum_.assign(pixels * static_cast<std::size_t>(channels_), 0), seen_.assign(pixels, 0);
-    for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x)
-        for (std::size_t k = 0; k < pattern_.size(); ++k) {
-          const auto ray = ray_through(camera_, x + pattern_[k][0], y + pattern_[k][1]);
-          if (!ray) continue;
-          Way& way = next_way();
-          way.pixel = static_cast<std::uint32_t>((y - y0) * width_ + x - x0), way.sample = static_cast<int>(k);
-          way.turns = 0, way.weight = Spectrum(1.0), way.origin = ray->origin, way.direction = ray->direction;
-          way.near = 0, way.is_gloss = false;
-          send_when(kLanes);
-        }
+  /// keys  of the pixels' random numbers, one each.
+  void clear(std::span<const std::uint64_t> keys) {
+    keys_.assign(keys.begin(), keys.end());
+    sum_.assign(keys.size() * static_cast<std::size_t>(channels_), 0), seen_.assign(keys.size(), 0);
+  }
+
+  /// Ray `sample` of a pixel, in the surfaces' frame.
+  void start(std::size_t pixel, std::size_t sample, const Vec3& origin, const Vec3& direction, double near) {
+    Way& way = next_way();
+    way.pixel = static_cast<std::uint32_t>(pixel), way.number = static_cast<std::uint32_t>(sample);
+    way.sample = static_cast<int>(sample);
+    way.turns = 0, way.weight = Spectrum(1.0), way.share = 1, way.origin = origin, way.direction = direction;
+    way.near = near, way.is_gloss = false;
+    send_when(kLanes);
+  }
+
+  void finish() {
     send_when(1);
     // Rays that go on through panes, and those turned back, go the same way as their neighbours of the same kind.
     while (!through_.empty() || !back_.empty())
@@ -133,15 +162,22 @@ class ViewScene::Tile {
         for (const Way& way : now) next_way() = way, send_when(kLanes);
         send_when(1);
       }
-    write(x0, y0, y1);
   }
+
+  /// Sums over the rays of a pixel.
+  double sum(std::size_t pixel, int channel) const {
+    return sum_[pixel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel)];
+  }
+  double seen(std::size_t pixel) const { return seen_[pixel]; }
 
  private:
   static constexpr std::size_t kLanes = 16;
+  static constexpr ViewOptions kLooksAround{};
   struct Way {
-    std::uint32_t pixel = 0;  ///< of the tile
-    int sample = 0, turns = 0;
+    std::uint32_t pixel = 0, number = 0;  ///< of the tile; of the ray in it
+    int sample = 0, turns = 0;            ///< sample: the number, or kStandsForSome
     Spectrum weight{1.0};
+    double share = 1;        ///< of the rays that stand for one
     Vec3 origin, direction;  ///< of the surfaces' frame
     double near = 0;
     bool is_gloss = false;  ///< what comes along it adds to a surface that is seen already
@@ -152,6 +188,7 @@ class ViewScene::Tile {
   void send_when(std::size_t least) {
     if (waiting_ < least) return;
     SightPacket packet;
+    packet.is_scattered = looks_around_;
     for (std::size_t k = 0; k < waiting_; ++k) packet.add(ways_[k].origin, ways_[k].direction, ways_[k].near);
     Sights sights;
     scene_.surfaces_.look(packet, sights);
@@ -169,16 +206,63 @@ class ViewScene::Tile {
   void add(const Way& way, int channel, double value) {
     const double most = way.sample == kStandsForSome ? kOneOf * options_.most : options_.most;
     sum_[way.pixel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel)] +=
-        std::min(way.weight[channel] * value, most);
+        way.share * std::min(way.weight[channel] * value, most);
   }
 
   void take_surface(const Way& way, std::uint32_t triangle, float u, float v, double t) {
     const auto n = static_cast<std::size_t>(channels_);
     const float* corner = &scene_.corner_values_[triangle * 3 * n];
-    for (std::size_t k = 0; k < n; ++k)
-      add(way, static_cast<int>(k), double{(1 - u - v) * corner[k] + u * corner[n + k] + v * corner[2 * n + k]});
+    Spectrum besides(0.0);
+    if (options_.fine) besides = fine_light(way, triangle, u, v);
+    for (std::size_t k = 0; k < n; ++k) {
+      const double of_field{(1 - u - v) * corner[k] + u * corner[n + k] + v * corner[2 * n + k]};
+      add(way, static_cast<int>(k), of_field + besides[static_cast<int>(k)]);
+    }
     see(way, luminous_mean(way.weight));
     if (!scene_.lobes_.empty()) shine(way, triangle, t);
+  }
+
+  Draw draw_of(const Way& way) const {
+    return {stream_key(keys_[way.pixel], static_cast<std::uint64_t>(way.turns)), way.number};
+  }
+
+  /// What the field leaves out.
+  Spectrum fine_light(const Way& way, std::uint32_t triangle, double u, double v) {
+    const auto& [a, b, c] = scene_.triangles_[triangle];
+    const auto& x = scene_.result_.points;
+    SeenPlace at;
+    at.p = x[a] * (1 - u - v) + x[b] * u + x[c] * v;
+    at.n = normalized(cross(x[b] - x[a], x[c] - x[a]));
+    at.to_eye = normalized(way.direction) * -1.0;
+    if (scene_.field_.is_radiance) {
+      const std::uint32_t material = scene_.material_[triangle];
+      at.diffuse = scene_.result_.materials[material].reflectance / std::numbers::pi;
+      if (!scene_.lobes_.empty())
+        if (const int lobe = scene_.lobe_of_material_[material]; lobe >= 0)
+          at.lobe = &scene_.lobes_[static_cast<std::size_t>(lobe)];
+    }
+    const Draw draw = draw_of(way);
+    Spectrum sent = options_.fine->sent_on(at, draw);
+    if (inner_) sent += at.diffuse * gathered(at, draw);
+    return scene_.field_.is_radiance ? sent : Spectrum(photometric(sent));
+  }
+
+  /// Irradiance by what rays meet that look around [W/m2].
+  Spectrum gathered(const SeenPlace& at, const Draw& draw) {
+    const SeenSurfaces& surfaces = options_.around->surfaces_;
+    const auto count = static_cast<std::uint32_t>(options_.gather);
+    const std::uint64_t key = stream_key(draw.key, kGatherSeen);
+    const Frame frame(at.n);
+    const Vec3 origin = at.p - surfaces.centre();
+    inner_->clear({&key, 1});
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const auto u = sobol4(draw.number * count + k, key);
+      inner_->start(0, k, origin, cosine_direction(frame, u[0], u[1]), surfaces.lift());
+    }
+    inner_->finish();
+    Spectrum L(0.0);
+    for (int k = 0; k < kMaxChannels; ++k) L[k] = inner_->sum(0, std::min(k, inner_->channels_ - 1));
+    return L * (std::numbers::pi / count);
   }
 
   void see(const Way& way, double weight) {
@@ -193,16 +277,28 @@ class ViewScene::Tile {
     const auto& x = scene_.result_.points;
     const Vec3 n = normalized(cross(x[b] - x[a], x[c] - x[a])), d = normalized(way.direction);
     const Vec3 place = way.origin + way.direction * t;
-    RandomStream random(key_of_sight(place, d, way.sample), 0);
-    const double u = random.uniform(), v = random.uniform();
-    const Lobe::Sample s = scene_.lobes_[static_cast<std::size_t>(number)].sample(n, -d, u, v);
-    if (!(s.density > 0)) return;
-    Way next = way;
-    next.weight *= s.weight;
-    if (!(luminous_mean(next.weight) >= kLeastWeight)) return;
-    next.is_gloss = true, ++next.turns;
-    next.origin = place, next.direction = s.direction, next.near = scene_.surfaces_.lift();
-    back_.push_back(next);
+    const auto follow = [&](double u, double v, std::uint32_t rays) {
+      const Lobe::Sample s = scene_.lobes_[static_cast<std::size_t>(number)].sample(n, -d, u, v);
+      if (!(s.density > 0)) return;
+      Way next = way;
+      next.weight *= s.weight;
+      if (!(luminous_mean(next.weight) >= kLeastWeight)) return;
+      next.share /= rays;
+      next.is_gloss = true, ++next.turns;
+      next.origin = place, next.direction = s.direction, next.near = scene_.surfaces_.lift();
+      back_.push_back(next);
+    };
+    if (!options_.fine) {
+      RandomStream random(key_of_sight(place, d, way.sample), 0);
+      const double u = random.uniform(), v = random.uniform();
+      return follow(u, v, 1);
+    }
+    const std::uint32_t rays = way.is_gloss ? 1 : kGlossRays;
+    const std::uint64_t key = stream_key(draw_of(way).key, kGlossSeen);
+    for (std::uint32_t k = 0; k < rays; ++k) {
+      const auto numbers = sobol4(way.number * rays + k, key);
+      follow(numbers[0], numbers[1], rays);
+    }
   }
 
   void take_sky(const Way& way) {
@@ -230,7 +326,7 @@ class ViewScene::Tile {
       const double weight = luminous_mean(next.weight);
       if (!(weight >= kLeastWeight) || ++next.turns > kMostTurns) return;
       followed += weight;
-      if (weight < kDim && way.sample >= 0 && pattern_.size() % kOneOf == 0) {
+      if (weight < kDim && way.sample >= 0 && count_ % kOneOf == 0) {
         if (way.sample % kOneOf != 0) return;
         next.weight *= kOneOf, next.sample = kStandsForSome;
       }
@@ -242,29 +338,17 @@ class ViewScene::Tile {
     see(way, luminous_mean(way.weight) - followed);
   }
 
-  void write(int x0, int y0, int y1) {
-    const double share = 1.0 / static_cast<double>(pattern_.size());
-    const auto n = static_cast<std::size_t>(channels_);
-    for (int y = y0; y < y1; ++y)
-      for (int x = 0; x < width_; ++x) {
-        const auto from = static_cast<std::size_t>((y - y0) * width_ + x);
-        const std::size_t to =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x0 + x);
-        for (std::size_t k = 0; k < n; ++k) image_.value[to * n + k] = static_cast<float>(sum_[from * n + k] * share);
-        image_.seen[to] = static_cast<float>(seen_[from] * share);
-      }
-  }
-
   const ViewScene& scene_;
-  const Camera& camera_;
   const ViewOptions& options_;
-  const std::vector<std::array<double, 2>>& pattern_;
-  ViewImage& image_;
-  int channels_, width_ = 0;
+  std::size_t count_;
+  bool looks_around_;
+  int channels_;
+  std::vector<std::uint64_t> keys_;
   std::vector<double> sum_, seen_;
   std::array<Way, kLanes> ways_;
   std::size_t waiting_ = 0;
   std::vector<Way> through_, back_;
+  std::unique_ptr<Ways> inner_;  ///< of a gather: rays from one place after the other
 };
 
 ViewImage ViewScene::trace(const Camera& camera, const ViewOptions& options, const Monitor& monitor) const {
@@ -273,17 +357,45 @@ ViewImage ViewScene::trace(const Camera& camera, const ViewOptions& options, con
   Camera local = camera;
   local.eye -= surfaces_.centre();
   const auto pattern = sample_pattern(static_cast<std::size_t>(options.samples));
+  const double share = 1.0 / static_cast<double>(pattern.size());
+
+  /// A square of the picture.
+  const auto trace_tile = [&](int x0, int y0) {
+    const int x1 = std::min(x0 + kTileSide, image.width), y1 = std::min(y0 + kTileSide, image.height);
+    std::vector<std::size_t> pixels;
+    std::vector<std::uint64_t> keys;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+        keys.push_back(stream_key(kLightsSeen, pixels.back()));
+      }
+    Ways ways(*this, options, pattern.size());
+    ways.clear(keys);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const auto width = static_cast<std::size_t>(image.width);
+      const auto x = static_cast<double>(pixels[i] % width), y = static_cast<double>(pixels[i] / width);
+      for (std::size_t k = 0; k < pattern.size(); ++k)
+        if (const auto ray = ray_through(local, x + pattern[k][0], y + pattern[k][1]))
+          ways.start(i, k, ray->origin, ray->direction, 0);
+    }
+    ways.finish();
+    const auto n = static_cast<std::size_t>(image.channels);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      for (std::size_t k = 0; k < n; ++k)
+        image.value[pixels[i] * n + k] = static_cast<float>(ways.sum(i, static_cast<int>(k)) * share);
+      image.seen[pixels[i]] = static_cast<float>(ways.seen(i) * share);
+    }
+  };
+
   const int across = (image.width + kTileSide - 1) / kTileSide, down = (image.height + kTileSide - 1) / kTileSide;
   const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
-  const Blocks blocks = parallel_blocks(
-      tiles, std::max<std::size_t>(tiles / 16, 64), 1, "tracing", monitor, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const int x = static_cast<int>(i) % across * kTileSide, y = static_cast<int>(i) / across * kTileSide;
-          Tile(*this, local, options, pattern, image)
-              .trace(x, y, std::min(x + kTileSide, image.width), std::min(y + kTileSide, image.height));
-        }
-        return 0ull;
-      });
+  const Blocks blocks = parallel_blocks(tiles, std::max<std::size_t>(tiles / 16, 64), 1, "tracing", monitor,
+                                        [&](std::size_t begin, std::size_t end) {
+                                          for (std::size_t i = begin; i < end; ++i)
+                                            trace_tile(static_cast<int>(i) % across * kTileSide,
+                                                       static_cast<int>(i) / across * kTileSide);
+                                          return 0ull;
+                                        });
   return blocks.done == tiles ? image : ViewImage{};
 }
 

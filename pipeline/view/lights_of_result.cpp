@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/input_file.h"
 #include "io/read_run_report.h"
 #include "io/text.h"
 #include "pipeline/collect_around.h"
@@ -36,16 +37,17 @@ void require_light_as_in_scene(const WrittenResult& result) {
     if (layer.factor != 1) refuse(text("was mixed: '", quotable(layer.name), "' is at ", rounded(layer.factor)));
 }
 
-double figure(const WrittenResult& result, const char* name, double otherwise) {
+/// Nothing where the result does not say, or says 0.
+std::optional<double> figure(const WrittenResult& result, const char* name) {
   const auto at = result.figures.find(name);
-  return at == result.figures.end() ? otherwise : at->second;
+  return at == result.figures.end() || !(at->second > 0) ? std::nullopt : std::optional(at->second);
 }
 
 /// As it was meshed.
 Settings settings_of(const WrittenResult& result) {
   Settings settings;
   settings.channels = result.channels();
-  settings.max_element = figure(result, "settings.max_element", 0);
+  settings.max_element = figure(result, "settings.max_element");
   if (const auto detail = result.figures.find("settings.detail"); detail != result.figures.end())
     settings.detail = detail->second;
   return settings;
@@ -96,10 +98,10 @@ std::string changed_light(const WrittenResult& result, const Scene& scene) {
 }
 
 std::string changed_surfaces(const WrittenResult& result, const Prepared& now) {
-  const double then_faces = figure(result, "repairs.input_faces", -1);
-  if (then_faces >= 0 && then_faces != static_cast<double>(now.repairs.input_faces))
-    return text("it has ", grouped(now.repairs.input_faces), " faces instead of ",
-                grouped(static_cast<std::size_t>(then_faces)));
+  const std::size_t faces = now.repairs.input_faces;
+  const double faces_then = figure(result, "repairs.input_faces").value_or(static_cast<double>(faces));
+  if (faces_then != static_cast<double>(faces))
+    return text("it has ", grouped(faces), " faces instead of ", grouped(static_cast<std::size_t>(faces_then)));
   const double reach = kOffSurface * now.rays.diameter() + now.repairs.tolerance + now.repairs.simplified_by;
   const std::size_t step = std::max<std::size_t>(result.triangles.size() / kPlaces, 1);
   double area = 0, missing = 0;
@@ -124,11 +126,11 @@ std::optional<Prepared> lights_of_result(const WrittenResult& result, const std:
   const Scene scene = read_scene_of(result, file, instead);
   const auto require_same = [&](const std::string& change) {
     if (!change.empty())
-      throw InputError(text(scene.file, ": is not as it was when ", result.file, " was solved: ", change,
+      throw InputError(text(short_name(scene.file), ": is not as it was when ", result.file, " was solved: ", change,
                             ". Solve it again, or name the right one by --scene FILE."));
   };
   if (!scene.times.empty())
-    throw InputError(text(scene.file, ": is lit for ", scene.times.size(),
+    throw InputError(text(short_name(scene.file), ": is lit for ", scene.times.size(),
                           " times, and rays need the light of one. Leave --raytrace out."));
   require_same(changed_light(result, scene));
   std::optional<Prepared> prepared = prepare_for_rays(scene, settings_of(result), monitor);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSure = 0.02;     // bounds nearer than this, as a share of the upper one, are no edge of a shadow
 constexpr int kMostSweeps = 64;    // over points that take after their neighbours
-constexpr std::size_t kMostOfFacing = 4;  // facets of one facing that a point looks from
+constexpr std::size_t kMostOfFacing = 8;  // facets of one facing that a point looks from
 
 /// Which triangles are at each point.
 struct TrianglesOfPoints {

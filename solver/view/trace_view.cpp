@@ -114,8 +114,8 @@ ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<
       if (material.is_glossy()) lobes_.emplace_back(*material.gloss);
     }
   }
-  material_.reserve(triangles.size());
-  for (const std::uint32_t i : triangles) material_.push_back(result.material[i]);
+  if (field_.is_radiance)
+    for (const std::uint32_t i : triangles) material_.push_back(result.material[i]);
   const auto n = static_cast<std::size_t>(field_.channels);
   corner_values_.reserve(3 * n * triangles_.size());
   for (const auto& corners : triangles_)

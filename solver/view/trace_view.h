@@ -83,7 +83,7 @@ class ViewScene {
   std::vector<GlassTable> glass_;
   std::vector<Lobe> lobes_;              ///< of glossy materials, where light is shown
   std::vector<int> lobe_of_material_;    ///< below 0: none; empty: there are no lobes
-  std::vector<std::uint32_t> material_;  ///< of the triangles that are shown
+  std::vector<std::uint32_t> material_;  ///< of the triangles that are shown; empty unless it is radiance
   std::vector<float> corner_values_;     ///< 3 x channels a triangle
   SeenSurfaces surfaces_;
 };

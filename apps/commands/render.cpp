@@ -99,8 +99,9 @@ void add_camera_options(CLI::App& command, ViewRequest& view, bool& fits) {
       command.add_option("--camera", view.camera, "a camera of the glTF model that was solved, by its name")
           ->type_name("NAME");
   command
-      .add_option("--scene", view.scene,
-                  "the scene or model that was solved, for --camera, --raytrace and --final-gather (default: where it was)")
+      .add_option(
+          "--scene", view.scene,
+          "the scene or model that was solved, for --camera, --raytrace and --final-gather (default: where it was)")
       ->type_name("FILE");
   CLI::Option* fit = command.add_flag("--fit", fits, "from outside above a corner into the rooms; the default");
   CLI::Option* plan =

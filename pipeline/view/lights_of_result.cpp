@@ -15,10 +15,10 @@
 namespace clerestory {
 namespace {
 
-constexpr double kAlike = 1e-3;          ///< of numbers that were written as float, or summed in another order [1]
-constexpr double kMissing = 0.01;        ///< of the surfaces; less is rounding
-constexpr double kOffSurface = 1e-5;     ///< of the diagonal: results are written as float
-constexpr std::size_t kPlaces = 2000;    ///< where surfaces are looked for
+constexpr double kAlike = 1e-3;        ///< of numbers that were written as float, or summed in another order [1]
+constexpr double kMissing = 0.01;      ///< of the surfaces; less is rounding
+constexpr double kOffSurface = 1e-5;   ///< of the diagonal: results are written as float
+constexpr std::size_t kPlaces = 2000;  ///< where surfaces are looked for
 
 bool alike(double a, double b) { return std::abs(a - b) <= kAlike * std::max(std::abs(a), std::abs(b)); }
 bool alike(const Spectrum& a, const Spectrum& b) {

@@ -110,7 +110,7 @@ ValueScale scale_of(const ViewImage& image, const ViewRequest& request) {
 /// What rays find at each place that is seen, and the field that is left to the result.
 struct RaysAndRest {
   Prepared scene;
-  std::optional<FineLight> light;    ///< of that
+  std::optional<FineLight> light;  ///< of that
   ShownField rest;
   std::optional<ViewScene> around;  ///< of a final gather: all surfaces, with all light
 };
@@ -169,6 +169,12 @@ RenderedView render_view(const WrittenResult& result, const std::filesystem::pat
   if (std::ranges::all_of(image.seen, [](float s) { return s == 0; }))
     observer.warn("nothing is seen from there: the picture is empty.");
   const bool shows_light = request.shows_colour() || request.show == "luminance";
+  if (rays)
+    view.notes.push_back(text(rays->light->empty() ? "the scene has no lamps and no sun for rays to find"
+                                                   : "light straight from lamps and sun by rays",
+                              request.final_gather > 0
+                                  ? text(", all other light by ", request.final_gather, " rays from each place")
+                                  : std::string(", all other light is the result's")));
   if (shows_light && !rays && std::ranges::any_of(result.materials, &Material::is_glossy))
     view.notes.push_back("glossy surfaces show other surfaces and the sky, not lamps and the sun themselves");
   if (!request.shows_colour() && (request.show == "luminance" || !as_exr)) {

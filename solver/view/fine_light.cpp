@@ -83,9 +83,7 @@ Spectrum FineLight::sent_on(const SeenPlace& at, const Draw& draw) const {
     sum += c.brightness;
     ++count;
   };
-  const auto numbers = [&](std::uint32_t k) {
-    return sobol4(draw.number, stream_key(draw.key, kLightsSeen, k));
-  };
+  const auto numbers = [&](std::uint32_t k) { return sobol4(draw.number, stream_key(draw.key, kLightsSeen, k)); };
   if (choice_.empty()) {
     for (std::uint32_t light = 0; light < luminaires() + suns(); ++light) consider(light, numbers(light), 1);
   } else {
@@ -96,8 +94,8 @@ Spectrum FineLight::sent_on(const SeenPlace& at, const Draw& draw) const {
     }
   }
   Spectrum sent(0.0);
-  auto shadows = shadow_rays<Spectrum>(
-      rays, [&](const Spectrum& of_light, const Spectrum& passes) { sent += of_light * passes; });
+  auto shadows =
+      shadow_rays<Spectrum>(rays, [&](const Spectrum& of_light, const Spectrum& passes) { sent += of_light * passes; });
   const auto look = [&](const Candidate& c, double weight) {
     if (c.segment.is_free)
       sent += c.sent * weight;
@@ -169,7 +167,9 @@ StraightLight FineLight::at_point(const Vec3& place, const Vec3& n) const {
   for (std::uint32_t light = 0; light < luminaires(); ++light) {
     const PlacedLuminaire& luminaire = problem_.lights.luminaires[light];
     const int count = std::min(kRaysOfPoint, opening_rays(luminaire, p));
-    look(light, count, [&](int k) { return count == 1 ? OpeningPlace{0.5, 0.5, 1} : opening_place(luminaire, k, count); });
+    look(light, count, [&](int k) {
+      return count == 1 ? OpeningPlace{0.5, 0.5, 1} : opening_place(luminaire, k, count);
+    });
   }
   for (std::uint32_t light = luminaires(); light < luminaires() + suns(); ++light)
     look(light, kRaysOfPoint, [](int k) {

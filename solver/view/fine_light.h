@@ -11,11 +11,11 @@ namespace clerestory {
 
 /// A place on a surface, and who sees it.
 struct SeenPlace {
-  Vec3 p;                       ///< scene's frame [m]
-  Vec3 n;                       ///< unit, on the eye's side
-  Vec3 to_eye;                  ///< unit
-  Spectrum diffuse{1.0};        ///< what is sent to the eye of irradiance; 1: the irradiance itself is asked for
-  const Lobe* lobe = nullptr;   ///< of a glossy surface: sends on besides
+  Vec3 p;                      ///< scene's frame [m]
+  Vec3 n;                      ///< unit, on the eye's side
+  Vec3 to_eye;                 ///< unit
+  Spectrum diffuse{1.0};       ///< what is sent to the eye of irradiance; 1: the irradiance itself is asked for
+  const Lobe* lobe = nullptr;  ///< of a glossy surface: sends on besides
 };
 
 /// Point `number` of a sequence that belongs to `key`: the first 2^k together are well spread.
@@ -42,8 +42,8 @@ class FineLight {
   bool empty() const { return luminaires() + suns() == 0; }
 
   /// What the place sends to the eye of light that comes to it straight from luminaires and suns, over mirrors and
-  /// through panes too: diffuse E + sum of lobe E_light. All light at a place that is sharper than the field of vertices
-  /// comes from here.
+  /// through panes too: diffuse E + sum of lobe E_light. All light at a place that is sharper than the field of
+  /// vertices comes from here.
   Spectrum sent_on(const SeenPlace& at, const Draw& draw) const;
 
   /// Irradiance of a plane of unit normal n at p (scene's frame), by up to 16 shadow rays to each light.

@@ -14,8 +14,8 @@
 namespace clerestory {
 namespace {
 
-constexpr double kSure = 0.02;     // bounds nearer than this, as a share of the upper one, are no edge of a shadow
-constexpr int kMostSweeps = 64;    // over points that take after their neighbours
+constexpr double kSure = 0.02;   // bounds nearer than this, as a share of the upper one, are no edge of a shadow
+constexpr int kMostSweeps = 64;  // over points that take after their neighbours
 constexpr std::size_t kMostOfFacing = 8;  // facets of one facing that a point looks from
 
 /// Which triangles are at each point.
@@ -51,9 +51,8 @@ std::vector<bool> outline_points(const WrittenResult& result, const TrianglesOfP
   };
   std::vector<std::uint32_t> order(result.points.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(order, [&](std::uint32_t p, std::uint32_t q) {
-    return place(p) != place(q) ? place(p) < place(q) : p < q;
-  });
+  std::ranges::sort(
+      order, [&](std::uint32_t p, std::uint32_t q) { return place(p) != place(q) ? place(p) < place(q) : p < q; });
   std::vector<bool> is_outline(order.size());
   const auto face_alike = [&](std::uint32_t p, std::uint32_t q) {
     for (const std::uint32_t t : at.of(p))
@@ -82,7 +81,8 @@ std::vector<FacetsAlike> facings_of(const WrittenResult& result, std::span<const
   std::vector<FacetsAlike> facings;
   for (const std::uint32_t t : facets) {
     const Vec3 n = normal_of(result, t);
-    auto at = std::ranges::find_if(facings, [&](const FacetsAlike& f) { return dot(f.normal, n) > VertexLightmap::kAlike; });
+    auto at =
+        std::ranges::find_if(facings, [&](const FacetsAlike& f) { return dot(f.normal, n) > VertexLightmap::kAlike; });
     if (at == facings.end()) at = facings.insert(at, FacetsAlike{n, {}});
     at->facets.push_back(t);
   }
@@ -132,7 +132,8 @@ Field rest_of_light(const WrittenResult& result, const FineLight& light, const M
   const std::vector<bool> is_outline = outline_points(result, at);
   std::vector<StraightLight> straight(count);
   const Blocks blocks = parallel_blocks(
-      count, std::max<std::size_t>(count / 16, 1024), 64, "direct light", monitor, [&](std::size_t begin, std::size_t end) {
+      count, std::max<std::size_t>(count / 16, 1024), 64, "direct light", monitor,
+      [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
           straight[p] = at_facets(result, light, p, at.of(p),
                                   is_outline[p] ? VertexLightmap::kWayFromOutline : VertexLightmap::kWayToCentroid);
@@ -182,13 +183,15 @@ Field light_by_gloss(const WrittenResult& result, const FineLight& light, const 
   const TrianglesOfPoints at = triangles_of_points(result);
   const std::vector<bool> is_outline = outline_points(result, at);
   const Blocks blocks = parallel_blocks(
-      count, std::max<std::size_t>(count / 16, 1024), 64, "light by gloss", monitor, [&](std::size_t begin, std::size_t end) {
+      count, std::max<std::size_t>(count / 16, 1024), 64, "light by gloss", monitor,
+      [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
           const std::vector<FacetsAlike> facings = facings_of(result, at.of(p));
           const double way = is_outline[p] ? VertexLightmap::kWayFromOutline : VertexLightmap::kWayToCentroid;
           for (const FacetsAlike& f : facings)
             E.add(p, light.by_gloss(on_facet(result, p, f.facets.front(), way), f.normal, kPairs,
-                                    stream_key(kLightsOfPoints, p)) / static_cast<double>(facings.size()));
+                                    stream_key(kLightsOfPoints, p)) /
+                         static_cast<double>(facings.size()));
         }
         return 0ull;
       });

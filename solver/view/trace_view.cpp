@@ -74,7 +74,8 @@ ShownField radiance_of(const WrittenResult& result, const Field& E) {
     for (const std::uint32_t p : result.triangles[t]) material[p] = result.material[t];
   for (std::size_t i = 0; i < field.of_points.size(); ++i) {
     const std::size_t point = i / static_cast<std::size_t>(B.components);
-    const double rho = result.materials[material[point]].reflectance[static_cast<int>(i % static_cast<std::size_t>(B.components))];
+    const double rho =
+        result.materials[material[point]].reflectance[static_cast<int>(i % static_cast<std::size_t>(B.components))];
     const double less = double{B.value[i]} - rho * (double{all.value[i]} - E.value[i]);
     field.of_points[i] = static_cast<float>(std::max(0.0, less) / std::numbers::pi);
   }
@@ -126,19 +127,15 @@ ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<
 /// Rays and what becomes of them, on one thread: those of a square of the picture, or those that look around.
 class ViewScene::Ways {
  public:
-  /// count  rays a pixel.
-  Ways(const ViewScene& scene, const ViewOptions& options, std::size_t count, bool looks_around = false)
-      : scene_(scene),
-        options_(options),
-        count_(count),
-        looks_around_(looks_around),
-        channels_(scene.field_.channels) {
-    if (options.fine && options.gather > 0)
-      inner_ = std::make_unique<Ways>(*options.around, kLooksAround, static_cast<std::size_t>(options.gather), true);
+  Ways(const ViewScene& scene, const ViewOptions& options, bool looks_around = false)
+      : scene_(scene), options_(options), looks_around_(looks_around), channels_(scene.field_.channels) {
+    if (options.fine && options.gather > 0) inner_ = std::make_unique<Ways>(*options.around, kLooksAround, true);
   }
 
-  /// keys  of the pixels' random numbers, one each.
-  void clear(std::span<const std::uint64_t> keys) {
+  /// keys   of the pixels' random numbers, one each
+  /// count  rays a pixel
+  void clear(std::span<const std::uint64_t> keys, std::size_t count) {
+    count_ = count;
     keys_.assign(keys.begin(), keys.end());
     sum_.assign(keys.size() * static_cast<std::size_t>(channels_), 0), seen_.assign(keys.size(), 0);
   }
@@ -243,18 +240,23 @@ class ViewScene::Ways {
     }
     const Draw draw = draw_of(way);
     Spectrum sent = options_.fine->sent_on(at, draw);
-    if (inner_) sent += at.diffuse * gathered(at, draw);
+    if (inner_) sent += at.diffuse * gathered(at, draw, rays_for(way));
     return scene_.field_.is_radiance ? sent : Spectrum(photometric(sent));
   }
 
-  /// Irradiance by what rays meet that look around [W/m2].
-  Spectrum gathered(const SeenPlace& at, const Draw& draw) {
+  /// Of a gather at a place that is seen along this way: fewer where little of it is seen. A multiple of kOneOf.
+  std::uint32_t rays_for(const Way& way) const {
+    const double wanted = options_.gather * std::min(1.0, way.share * luminous_mean(way.weight));
+    return static_cast<std::uint32_t>(std::max(1.0, std::ceil(wanted / kOneOf))) * kOneOf;
+  }
+
+  /// Irradiance by what `count` rays meet that look around [W/m2].
+  Spectrum gathered(const SeenPlace& at, const Draw& draw, std::uint32_t count) {
     const SeenSurfaces& surfaces = options_.around->surfaces_;
-    const auto count = static_cast<std::uint32_t>(options_.gather);
     const std::uint64_t key = stream_key(draw.key, kGatherSeen);
     const Frame frame(at.n);
     const Vec3 origin = at.p - surfaces.centre();
-    inner_->clear({&key, 1});
+    inner_->clear({&key, 1}, count);
     for (std::uint32_t k = 0; k < count; ++k) {
       const auto u = sobol4(draw.number * count + k, key);
       inner_->start(0, k, origin, cosine_direction(frame, u[0], u[1]), surfaces.lift());
@@ -277,13 +279,15 @@ class ViewScene::Ways {
     const auto& x = scene_.result_.points;
     const Vec3 n = normalized(cross(x[b] - x[a], x[c] - x[a])), d = normalized(way.direction);
     const Vec3 place = way.origin + way.direction * t;
-    const auto follow = [&](double u, double v, std::uint32_t rays) {
+    const auto follow = [&](double u, double v, std::uint32_t rays, std::uint32_t k) {
       const Lobe::Sample s = scene_.lobes_[static_cast<std::size_t>(number)].sample(n, -d, u, v);
       if (!(s.density > 0)) return;
       Way next = way;
       next.weight *= s.weight;
-      if (!(luminous_mean(next.weight) >= kLeastWeight)) return;
-      next.share /= rays;
+      const double weight = luminous_mean(next.weight);
+      if (!(weight >= kLeastWeight)) return;
+      if (looks_around_ && !is_one_of_some(next, weight)) return;
+      next.share /= rays, next.number = way.number * rays + k;
       next.is_gloss = true, ++next.turns;
       next.origin = place, next.direction = s.direction, next.near = scene_.surfaces_.lift();
       back_.push_back(next);
@@ -291,14 +295,22 @@ class ViewScene::Ways {
     if (!options_.fine) {
       RandomStream random(key_of_sight(place, d, way.sample), 0);
       const double u = random.uniform(), v = random.uniform();
-      return follow(u, v, 1);
+      return follow(u, v, 1, 0);
     }
     const std::uint32_t rays = way.is_gloss ? 1 : kGlossRays;
     const std::uint64_t key = stream_key(draw_of(way).key, kGlossSeen);
     for (std::uint32_t k = 0; k < rays; ++k) {
       const auto numbers = sobol4(way.number * rays + k, key);
-      follow(numbers[0], numbers[1], rays);
+      follow(numbers[0], numbers[1], rays, k);
     }
+  }
+
+  /// Whether a way of that weight is followed: of dim ones one, which stands for all.
+  bool is_one_of_some(Way& way, double weight) const {
+    if (weight >= kDim || way.sample < 0 || count_ % kOneOf != 0) return true;
+    if (way.sample % kOneOf != 0) return false;
+    way.weight *= kOneOf, way.sample = kStandsForSome;
+    return true;
   }
 
   void take_sky(const Way& way) {
@@ -326,10 +338,7 @@ class ViewScene::Ways {
       const double weight = luminous_mean(next.weight);
       if (!(weight >= kLeastWeight) || ++next.turns > kMostTurns) return;
       followed += weight;
-      if (weight < kDim && way.sample >= 0 && count_ % kOneOf == 0) {
-        if (way.sample % kOneOf != 0) return;
-        next.weight *= kOneOf, next.sample = kStandsForSome;
-      }
+      if (!is_one_of_some(next, weight)) return;
       next.origin = place, next.direction = direction, next.near = lift;
       open.push_back(next);
     };
@@ -340,8 +349,8 @@ class ViewScene::Ways {
 
   const ViewScene& scene_;
   const ViewOptions& options_;
-  std::size_t count_;
   bool looks_around_;
+  std::size_t count_ = 0;
   int channels_;
   std::vector<std::uint64_t> keys_;
   std::vector<double> sum_, seen_;
@@ -366,11 +375,12 @@ ViewImage ViewScene::trace(const Camera& camera, const ViewOptions& options, con
     std::vector<std::uint64_t> keys;
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
-        pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+        pixels.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                         static_cast<std::size_t>(x));
         keys.push_back(stream_key(kLightsSeen, pixels.back()));
       }
-    Ways ways(*this, options, pattern.size());
-    ways.clear(keys);
+    Ways ways(*this, options);
+    ways.clear(keys, pattern.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const auto width = static_cast<std::size_t>(image.width);
       const auto x = static_cast<double>(pixels[i] % width), y = static_cast<double>(pixels[i] / width);
@@ -389,13 +399,12 @@ ViewImage ViewScene::trace(const Camera& camera, const ViewOptions& options, con
 
   const int across = (image.width + kTileSide - 1) / kTileSide, down = (image.height + kTileSide - 1) / kTileSide;
   const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
-  const Blocks blocks = parallel_blocks(tiles, std::max<std::size_t>(tiles / 16, 64), 1, "tracing", monitor,
-                                        [&](std::size_t begin, std::size_t end) {
-                                          for (std::size_t i = begin; i < end; ++i)
-                                            trace_tile(static_cast<int>(i) % across * kTileSide,
-                                                       static_cast<int>(i) / across * kTileSide);
-                                          return 0ull;
-                                        });
+  const Blocks blocks = parallel_blocks(
+      tiles, std::max<std::size_t>(tiles / 16, 64), 1, "tracing", monitor, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          trace_tile(static_cast<int>(i) % across * kTileSide, static_cast<int>(i) / across * kTileSide);
+        return 0ull;
+      });
   return blocks.done == tiles ? image : ViewImage{};
 }
 

@@ -58,8 +58,8 @@ class ViewScene {
   /// Empty when the monitor stopped it.
   ///
   /// Threads: same bits for any thread count. Rays are turned by mirrors and panes, and by gloss, each into one
-  /// direction of its lobe, until less than 1 % of the light would come that way, 16 times at most. Rays of a gather are
-  /// turned alike.
+  /// direction of its lobe, or four where light is found by rays, until less than 1 % of the light would come that way,
+  /// 16 times at most. Rays of a gather are turned alike.
   ViewImage trace(const Camera& camera, const ViewOptions& options, const Monitor& monitor = {}) const;
 
   const SeenSurfaces& surfaces() const { return surfaces_; }

@@ -109,8 +109,7 @@ TEST_F(RenderValues, ByRaysAreTheClosedFormOfALampAndOfItsShadow) {
     for (int x = 5; x < 15; ++x) {
       const double px = (x + 0.5 - 10) * metres, py = (5 - y - 0.5) * metres;
       const bool is_dark = std::abs(px) < 0.5 && std::abs(py) < 1;
-      const double exact =
-          is_dark ? 0 : 1000 / (4 * std::numbers::pi) * 2 / std::pow(4 + px * px + py * py, 1.5);
+      const double exact = is_dark ? 0 : 1000 / (4 * std::numbers::pi) * 2 / std::pow(4 + px * px + py * py, 1.5);
       // The vertices' own light is kept as float, and looked at a little beside them.
       EXPECT_NEAR(double{seen.at(x, y, 0)}, exact, 2e-3 * 20) << px << ' ' << py;
     }

@@ -85,7 +85,7 @@ TEST(FineLight, HasShadowsSharperThanTheMesh) {
       floor.seen(illuminance_of(rest_of_light(floor.result, FineLight(floor.problem))), from_above());
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 20; ++x) {
-      const Vec3 p = middle_of_pixel(x, y);  // 0.1 m off the edge and more
+      const Vec3 p = middle_of_pixel(x, y);                      // 0.1 m off the edge and more
       const double E = kRest + (in_shadow(p) ? 0 : of_lamp(p));  // points of a result look from a little beside
       EXPECT_NEAR(at(image, x, y), 179 * E, 1e-4 * 179 * E) << p.x << ' ' << p.y;
     }
@@ -106,7 +106,8 @@ TEST(FineLight, LeavesTheSameRestWhicheverSideOfAShadowsEdgeThePointsOfAResultCo
 TEST(FineLight, IsTheFieldWhereNothingCastsAShadow) {
   LitFloor floor(40, lamp(), false);
   floor.add_field(of_lamp);
-  const ViewImage as_solved = ViewScene(floor.result, radiance_of(floor.result), floor.triangles).trace(from_above(), {});
+  const ViewImage as_solved =
+      ViewScene(floor.result, radiance_of(floor.result), floor.triangles).trace(from_above(), {});
   const ViewImage by_rays =
       floor.seen(radiance_of(floor.result, rest_of_light(floor.result, FineLight(floor.problem))), from_above());
   for (std::size_t i = 0; i < as_solved.pixels(); ++i)
@@ -206,7 +207,8 @@ TEST(FineLight, BitsDoNotDependOnThreads) {
   LitFloor floor(8, lights, true, Gloss{Spectrum(0.4), {}, 0.3});
   floor.add_field(of_lamp);
   const auto picture = [&] {
-    return floor.seen(radiance_of(floor.result, rest_of_light(floor.result, FineLight(floor.problem))), from_above(), 4);
+    return floor.seen(radiance_of(floor.result, rest_of_light(floor.result, FineLight(floor.problem))), from_above(),
+                      4);
   };
   const ViewImage by_all = picture();
   set_thread_count(1);

@@ -29,7 +29,8 @@ bool alike(const Spectrum& a, const Spectrum& b) {
 
 void require_light_as_in_scene(const WrittenResult& result) {
   const auto refuse = [&](const std::string& why) {
-    throw InputError(text(result.file, ": ", why, "; rays find the light that its scene has. Leave --raytrace out."));
+    throw InputError(text(result.file, ": ", why,
+                          "; rays find the light that its scene has. Leave --raytrace and --final-gather out."));
   };
   if (result.texts.contains("settings.weather")) refuse("holds the light of a year");
   if (result.texts.contains("time")) refuse("holds one of several times");
@@ -131,7 +132,7 @@ std::optional<Prepared> lights_of_result(const WrittenResult& result, const std:
   };
   if (!scene.times.empty())
     throw InputError(text(short_name(scene.file), ": is lit for ", scene.times.size(),
-                          " times, and rays need the light of one. Leave --raytrace out."));
+                          " times, and rays need the light of one. Leave --raytrace and --final-gather out."));
   require_same(changed_light(result, scene));
   std::optional<Prepared> prepared = prepare_for_rays(scene, settings_of(result), monitor);
   if (!prepared) return {};

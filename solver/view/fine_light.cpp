@@ -72,7 +72,7 @@ FineLight::Candidate FineLight::candidate(std::uint32_t light, const Vec3& p, co
 
 Spectrum FineLight::sent_on(const SeenPlace& at, const Draw& draw) const {
   const RayScene& rays = problem_.rays;
-  const Vec3 p = rays.off_surface(at.p - problem_.patches.origin, at.n);
+  const Vec3 p = rays.off_surface(at.p - problem_.patches.origin, at.facet);
   std::array<Candidate, kMostCandidates> candidates;
   std::size_t count = 0;
   double sum = 0;

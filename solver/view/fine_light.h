@@ -12,7 +12,8 @@ namespace clerestory {
 /// A place on a surface, and who sees it.
 struct SeenPlace {
   Vec3 p;                      ///< scene's frame [m]
-  Vec3 n;                      ///< unit, on the eye's side
+  Vec3 facet;                  ///< unit normal there, on the eye's side
+  Vec3 n;                      ///< the same of the surface that facets stand for; light falls and shines by this one
   Vec3 to_eye;                 ///< unit
   Spectrum diffuse{1.0};       ///< what is sent to the eye of irradiance; 1: the irradiance itself is asked for
   const Lobe* lobe = nullptr;  ///< of a glossy surface: sends on besides

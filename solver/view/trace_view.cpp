@@ -35,6 +35,35 @@ std::vector<std::uint32_t> panes_that_show(const WrittenResult& result, bool is_
   return shown;
 }
 
+/// Whether a triangle sends nothing of what falls on it, though its material reflects: the other side of that is the
+/// one that does.
+bool is_black(const WrittenResult& result, std::uint32_t triangle) {
+  if (result.materials[result.material[triangle]].reflectance.is_black()) return true;
+  const WrittenArray &B = result.of_points.at("radiosity"), &E = result.of_points.at("irradiance");
+  const auto has_some = [&](const WrittenArray& array) {
+    const auto n = static_cast<std::size_t>(array.components);
+    for (const std::uint32_t p : result.triangles[triangle])
+      for (std::size_t k = 0; k < n; ++k)
+        if (array.value[p * n + k] != 0) return true;
+    return false;
+  };
+  return has_some(E) && !has_some(B);
+}
+
+std::vector<Vec3> normals_of_points(const WrittenResult& result,
+                                    const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<Vec3> normal(result.points.size());
+  for (const auto& corners : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& at = result.points[corners[k]];
+      const Vec3 u = result.points[corners[(k + 1) % 3]] - at, v = result.points[corners[(k + 2) % 3]] - at;
+      const Vec3 across = cross(u, v);
+      if (length(across) > 0) normal[corners[k]] += normalized(across) * std::atan2(length(across), dot(u, v));
+    }
+  for (Vec3& n : normal) n = normalized(n);  // of points without a facet, which nobody asks for, nonsense
+  return normal;
+}
+
 std::vector<std::array<Vec3, 3>> corners_of(const WrittenResult& result, const std::vector<std::uint32_t>& panes) {
   std::vector<std::array<Vec3, 3>> corners;
   for (const std::uint32_t i : panes) corners.push_back(result.around.panes[i].corners);
@@ -93,6 +122,7 @@ ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<
       field_(std::move(field)),
       triangles_(corners_of_triangles(result, triangles)),
       shown_panes_(panes_that_show(result, field_.is_radiance)),
+      normal_(normals_of_points(result, triangles_)),
       surfaces_(result.points, triangles_, corners_of(result, shown_panes_)) {
   std::map<std::uint32_t, int> table_of_material;
   for (const std::uint32_t i : shown_panes_) {
@@ -116,7 +146,8 @@ ViewScene::ViewScene(const WrittenResult& result, ShownField field, std::vector<
     }
   }
   if (field_.is_radiance)
-    for (const std::uint32_t i : triangles) material_.push_back(result.material[i]);
+    for (const std::uint32_t i : triangles)
+      material_.push_back(result.material[i]), is_black_.push_back(is_black(result, i));
   const auto n = static_cast<std::size_t>(field_.channels);
   corner_values_.reserve(3 * n * triangles_.size());
   for (const auto& corners : triangles_)
@@ -229,18 +260,23 @@ class ViewScene::Ways {
     const auto& x = scene_.result_.points;
     SeenPlace at;
     at.p = x[a] * (1 - u - v) + x[b] * u + x[c] * v;
-    at.n = normalized(cross(x[b] - x[a], x[c] - x[a]));
-    at.to_eye = normalized(way.direction) * -1.0;
+    at.facet = normalized(cross(x[b] - x[a], x[c] - x[a]));
+    at.to_eye = -normalized(way.direction);
+    const auto& n = scene_.normal_;
+    at.n = normalized(n[a] * (1 - u - v) + n[b] * u + n[c] * v);
+    if (!(dot(at.n, at.to_eye) > 0)) at.n = at.facet;
     if (scene_.field_.is_radiance) {
       const std::uint32_t material = scene_.material_[triangle];
-      at.diffuse = scene_.result_.materials[material].reflectance / std::numbers::pi;
       if (!scene_.lobes_.empty())
         if (const int lobe = scene_.lobe_of_material_[material]; lobe >= 0)
           at.lobe = &scene_.lobes_[static_cast<std::size_t>(lobe)];
+      if (scene_.is_black_[triangle] && !at.lobe) return Spectrum(0.0);
+      at.diffuse = scene_.is_black_[triangle] ? Spectrum(0.0)
+                                              : scene_.result_.materials[material].reflectance / std::numbers::pi;
     }
     const Draw draw = draw_of(way);
     Spectrum sent = options_.fine->sent_on(at, draw);
-    if (inner_) sent += at.diffuse * gathered(at, draw, rays_for(way));
+    if (inner_ && !at.diffuse.is_black()) sent += at.diffuse * gathered(at, draw, rays_for(way));
     return scene_.field_.is_radiance ? sent : Spectrum(photometric(sent));
   }
 
@@ -259,7 +295,9 @@ class ViewScene::Ways {
     inner_->clear({&key, 1}, count);
     for (std::uint32_t k = 0; k < count; ++k) {
       const auto u = sobol4(draw.number * count + k, key);
-      inner_->start(0, k, origin, cosine_direction(frame, u[0], u[1]), surfaces.lift());
+      Vec3 d = cosine_direction(frame, u[0], u[1]);
+      if (const double height = dot(d, at.facet); height < 0) d -= at.facet * (2 * height);
+      inner_->start(0, k, origin, d, surfaces.lift());
     }
     inner_->finish();
     Spectrum L(0.0);

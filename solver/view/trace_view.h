@@ -84,7 +84,9 @@ class ViewScene {
   std::vector<Lobe> lobes_;              ///< of glossy materials, where light is shown
   std::vector<int> lobe_of_material_;    ///< below 0: none; empty: there are no lobes
   std::vector<std::uint32_t> material_;  ///< of the triangles that are shown; empty unless it is radiance
+  std::vector<bool> is_black_;           ///< of them: the back of one-sided material; empty unless it is radiance
   std::vector<float> corner_values_;     ///< 3 x channels a triangle
+  std::vector<Vec3> normal_;             ///< of points, unit: the mean of the facets that share one, by their angles
   SeenSurfaces surfaces_;
 };
 

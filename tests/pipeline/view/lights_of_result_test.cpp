@@ -57,7 +57,7 @@ TEST_F(LightsOfResult, AreNotOfAYearOfOneTimeOfSeveralOrOfAMixture) {
   year.texts["settings.weather"] = {"city.epw"};
   time.texts["time"] = {"2026-03-21T12:00"};
   mixed.around.layers = {{"lamps", {}, {}, 0.25}};
-  const std::string advice = "; rays find the light that its scene has. Leave --raytrace out.";
+  const std::string advice = "; rays find the light that its scene has. Leave --raytrace and --final-gather out.";
   EXPECT_EQ(refused(year), "small.vtp: holds the light of a year" + advice);
   EXPECT_EQ(refused(time), "small.vtp: holds one of several times" + advice);
   EXPECT_EQ(refused(mixed), "small.vtp: was mixed: 'lamps' is at 0.250" + advice);

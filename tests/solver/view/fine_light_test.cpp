@@ -129,6 +129,43 @@ TEST(FineLight, ShowsALampsHighlightAsTheLobeHasIt) {
     }
 }
 
+TEST(FineLight, FallsOnFacetsAsOnTheSurfaceThatTheyStandFor) {
+  // A cylinder of 2 m around the y axis in facets of 10 degrees that share their points; the sun right above.
+  WrittenResult r = empty_result();
+  for (int i = 0; i <= 18; ++i)
+    for (const double y : {-2.0, 2.0}) {
+      const double angle = i * kPi / 18;
+      r.points.push_back({std::cos(angle), y, std::sin(angle) - 2});
+    }
+  for (std::uint32_t a = 0; a < 36; a += 2)
+    r.triangles.push_back({a, a + 3, a + 2}), r.triangles.push_back({a, a + 1, a + 3});
+  r.material.assign(36, 0), r.surface.assign(36, 0);
+  PatchBuilder facets;
+  for (const auto& [a, b, c] : r.triangles) facets.triangle(r.points[a], r.points[b], r.points[c]);
+  const PatchSet patches = facets.build();
+  const RayScene rays(patches);
+  Lights lights;
+  lights.suns = {{Sun{{0, 0, 1}, Spectrum(100.0)}}};
+  const Problem problem{patches, rays, lights};
+  const FineLight light(problem);
+  std::vector<std::uint32_t> all(36);
+  std::iota(all.begin(), all.end(), 0u);
+  const ViewScene scene(r, illuminance_of(Field(r.points.size(), 1)), all);
+  const ViewImage image = scene.trace(from_above(), {.samples = 1, .fine = &light});
+  for (int x = 6; x < 14; ++x) {
+    const double across = middle_of_pixel(x, 10).x, exact = 179 * 100 * std::sqrt(1 - across * across);
+    // Chords lie inside, by 1 - cos 5 degrees; a ray to the rim of the disc is off by 0.27 degrees.
+    EXPECT_NEAR(at(image, x, 10), exact, 0.009 * exact) << across;
+  }
+}
+
+TEST(FineLight, LeavesTheBacksOfOneSidedMaterialsBlack) {
+  LitFloor floor(1, lamp(), false);
+  for (float& B : floor.result.of_points["radiosity"].value) B = 0;
+  const ViewImage image = floor.seen(radiance_of(floor.result, Field(floor.result.points.size(), 1)), from_above());
+  for (const float value : image.value) EXPECT_EQ(value, 0);
+}
+
 TEST(FineLight, ShowsTheSunsPenumbraAsWideAsItsDisc) {
   // Right under the edge of the plate, 1 m above: half of the disc is seen; 4.65 mm to either side all or nothing.
   Lights lights;

@@ -98,6 +98,8 @@ Problem problem_with_view(const ViewRequest& r, bool as_exr) {
   if (r.fisheye && r.fov) return "--fisheye shows 180 degrees; leave --fov out";
   if (r.fov && r.is_drawing()) return "--fov goes with --eye and --target, or --camera";
   if (r.up && r.is_drawing()) return "--up goes with --eye and --target, or --camera";
+  if (!r.scene.empty() && r.camera.empty() && !r.wants_lights())
+    return "--scene is for --camera, --raytrace and --final-gather: the light of a result needs no scene";
   const bool has_scale = !r.shows_colour();
   if (r.range && !has_scale) return "--range is of false colours; name a quantity: --show illuminance";
   if (r.log_scale && !has_scale) return "--log-scale is of false colours; name a quantity: --show illuminance";

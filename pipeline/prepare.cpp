@@ -29,8 +29,9 @@ std::optional<double> longest_edge(const Settings& s) {
   return *s.max_element * std::pow(kTighterEdge, s.solve.tighten);
 }
 
-std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
-                                   const Monitor& monitor, StageSeconds& seconds) {
+/// Surfaces and rays; `lights` becomes as grey as these are. Nothing when interrupted.
+std::optional<Prepared> surfaces_of(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
+                                    const Monitor& monitor, LightSpec& lights, StageSeconds& seconds) {
   Lap lap;
   MeshedScene meshed = build_patches(scene,
                                      {.max_element = longest_edge(settings),
@@ -43,10 +44,19 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
   lap.add_to(seconds.mesh);
   if (monitor.is_interrupted()) return {};
 
-  LightSpec lights = scene.lights;
   if (patches.channels == 1) make_grey(patches.materials), make_grey(lights);
   RayScene rays(patches);
-  Prepared p{std::move(patches), meshed.report, std::move(rays), {}, {}};
+  lap.add_to(seconds.build);
+  return Prepared{std::move(patches), meshed.report, std::move(rays), {}, {}};
+}
+
+std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Scene& scene, const Settings& settings,
+                                   const Monitor& monitor, StageSeconds& seconds) {
+  LightSpec lights = scene.lights;
+  std::optional<Prepared> prepared = surfaces_of(fit_triangles, scene, settings, monitor, lights, seconds);
+  if (!prepared) return {};
+  Lap lap;
+  Prepared& p = *prepared;
   p.lights = place_lights(lights, p.patches, p.rays);
   p.lit_sides = has_light(scene) ? find_lit_sides(p.problem(), settings.solve.seed, monitor) : all_sides(p.patches);
   make_patches(p.patches, p.lit_sides.wanted);
@@ -54,7 +64,7 @@ std::optional<Prepared> prepare_in(std::optional<double> fit_triangles, const Sc
     for (std::size_t i = 0; i < p.patches.patch_count(); ++i)
       p.patches.space.push_back(p.lit_sides.space[2 * p.patches.triangle[i] + p.patches.side[i]]);
   lap.add_to(seconds.build);
-  return p;
+  return prepared;
 }
 
 /// Memory that a limit leaves for the solve, when the model has been read.
@@ -94,6 +104,17 @@ std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, con
 std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, const Monitor& monitor,
                                 StageSeconds& seconds) {
   return prepare_in({}, scene, settings, monitor, seconds);
+}
+
+std::optional<Prepared> prepare_for_rays(const Scene& scene, const Settings& settings, const Monitor& monitor) {
+  StageSeconds seconds;
+  LightSpec lights = scene.lights;
+  std::optional<Prepared> p = surfaces_of({}, scene, settings, monitor, lights, seconds);
+  if (!p) return {};
+  p->lights = place_lights_for_shadows(lights, p->patches, p->rays);
+  p->lit_sides = all_sides(p->patches);
+  make_patches(p->patches, p->lit_sides.wanted);
+  return p;
 }
 
 std::optional<PreparedToSolve> prepare_to_solve(const Scene& scene, Settings& settings, Observer& observer,

@@ -30,6 +30,10 @@ struct Prepared {
 std::optional<Prepared> prepare(const Scene& scene, const Settings& settings, const Monitor& monitor,
                                 StageSeconds& seconds);
 
+/// The same for who looks along rays only: all sides take part, whether light can reach them or not, and there are no
+/// openings.
+std::optional<Prepared> prepare_for_rays(const Scene& scene, const Settings& settings, const Monitor& monitor);
+
 struct PreparedToSolve {
   Prepared scene;
   VertexLightmap lightmap;  ///< of its patches

@@ -54,20 +54,11 @@ bool starts_with_any(const std::string& text, const std::vector<std::string>& be
 
 /// The rooms of solver/, lowest floor first: a room may include itself and the floors below it, no neighbour.
 const std::vector<std::vector<std::string>> kFloors = {
-    {"model"},
-    {"geometry"},
-    {"sampling", "visibility"},
-    {"form_factors", "view"},
-    {"lights"},
-    {"openings"},
-    {"illumination"},
-    {"particles"},
-    {"spaces", "gather", "paths"},
-    {"hierarchy"},
-    {"methods"},
-    {"evaluate", "annual"},
-    {"dimming"},
-    {"run"},
+    {"model"},        {"geometry"},  {"sampling", "visibility"},
+    {"form_factors"}, {"lights"},    {"openings"},
+    {"illumination"}, {"particles"}, {"spaces", "gather", "paths", "view"},
+    {"hierarchy"},    {"methods"},   {"evaluate", "annual"},
+    {"dimming"},      {"run"},
 };
 
 /// Folders whose headers a file may include.

@@ -46,6 +46,9 @@ ExitCode render_command(const Arguments& arguments, Console& console) {
                      {"width", static_cast<long long>(view.width)},
                      {"height", static_cast<long long>(view.height)},
                      {"samples", static_cast<long long>(arguments.view.samples)}};
+  if (arguments.view.wants_lights()) report.settings.push_back({"raytrace", true});
+  if (arguments.view.final_gather > 0)
+    report.settings.push_back({"final_gather", static_cast<long long>(arguments.view.final_gather)});
   report.log = view.notes;
   Outputs outputs;
   outputs.open(arguments.output).write(view.bytes);
@@ -95,9 +98,11 @@ void add_camera_options(CLI::App& command, ViewRequest& view, bool& fits) {
   CLI::Option* camera =
       command.add_option("--camera", view.camera, "a camera of the glTF model that was solved, by its name")
           ->type_name("NAME");
-  command.add_option("--scene", view.scene, "the scene or model that was solved, for --camera (default: where it was)")
-      ->type_name("FILE")
-      ->needs(camera);
+  command
+      .add_option(
+          "--scene", view.scene,
+          "the scene or model that was solved, for --camera, --raytrace and --final-gather (default: where it was)")
+      ->type_name("FILE");
   CLI::Option* fit = command.add_flag("--fit", fits, "from outside above a corner into the rooms; the default");
   CLI::Option* plan =
       add_words(command, "--plan", "Z", "a plan of what is below this height in metres, to scale, +y up",
@@ -135,6 +140,15 @@ void add_render_command(CLI::App& program, Task& task) {
   command.add_option("--samples", view.samples, "rays a pixel (default: 16)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
+  command.add_flag("--raytrace", view.raytrace,
+                   "read the scene again and find the light of lamps and sun by rays at each place that is seen: "
+                   "sharp shadows, and highlights on gloss");
+  command
+      .add_option("--final-gather", view.final_gather,
+                  "with that, N rays from each place look for all other light, too: no trace of the mesh, and slow "
+                  "(default: it is the result's)")
+      ->type_name("N")
+      ->check(CLI::Range(16, 4096));
   command
       .add_option("--show", view.show,
                   "colour, luminance, illuminance, daylight_factor or another array on the points of the result "

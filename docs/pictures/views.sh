@@ -5,7 +5,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 program=$PWD/build/release/bin/clerestory results=$PWD/build/pictures
 mkdir -p "$results"
 
-for scene in cornell_box house office office_night; do
+for scene in cornell_box house office office_gloss office_night; do
   "$program" solve data/scenes/$scene.json -o "$results/$scene.vtp" --quiet
 done
 "$program" render "$results/house.vtp" -o docs/pictures/view_house.png --eye 8.35,0.75,1.65 --target 1.9,2.35,1.0 \
@@ -14,6 +14,8 @@ done
   --isolux 100,200,300,500,750,1000 --range 0:1200 --size 560x700
 "$program" render "$results/office_night.vtp" -o docs/pictures/view_night.png --eye 2,4.6,1.5 --target 2,0,1.4 \
   --fov 80 --size 900x480
+"$program" render "$results/office_gloss.vtp" -o docs/pictures/view_raytrace.png --eye 3.1,4.6,1.5 --target 1.4,0.4,0.55 \
+  --fov 75 --exposure -0.5 --raytrace --size 900x500
 "$program" render "$results/cornell_box.vtp" -o docs/pictures/view_fit.png --size 480x400
 "$program" render "$results/office.vtp" -o docs/pictures/view_fisheye.png --eye 2,4.6,1.5 --target 2,0,1.4 --fisheye \
   --show luminance --log-scale --size 480x480

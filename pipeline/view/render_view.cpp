@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
 
 #include "io/picture/encode.h"
 #include "io/picture/iso_lines.h"
@@ -9,10 +12,12 @@
 #include "io/read_result.h"
 #include "io/text.h"
 #include "pipeline/view/choose_camera.h"
+#include "pipeline/view/lights_of_result.h"
 #include "pipeline/wording.h"
 #include "solver/model/error.h"
 #include "solver/model/exposure.h"
 #include "solver/model/units.h"
+#include "solver/view/rest_of_light.h"
 #include "solver/view/trace_view.h"
 #include "solver/view/visible_line.h"
 
@@ -102,12 +107,52 @@ ValueScale scale_of(const ViewImage& image, const ViewRequest& request) {
   return scale_around(std::move(seen), request.log_scale);
 }
 
+/// What rays find at each place that is seen, and the field that is left to the result.
+struct RaysAndRest {
+  Prepared scene;
+  std::optional<FineLight> light;  ///< of that
+  ShownField rest;
+  std::optional<ViewScene> around;  ///< of a final gather: all surfaces, with all light
+};
+
+/// Null when interrupted. throws InputError as lights_of_result(), and for quantities that have no such light.
+std::unique_ptr<RaysAndRest> rays_and_rest(const WrittenResult& result, const std::filesystem::path& file,
+                                           const ViewRequest& request, const Monitor& monitor) {
+  const bool is_radiance = request.shows_colour() || request.show == "luminance";
+  if (!is_radiance && request.show != "illuminance")
+    throw InputError(text(result.file, ": '", quotable(request.show), "' is not found by rays; ",
+                          request.final_gather > 0 ? "--final-gather" : "--raytrace",
+                          " goes with --show colour, luminance or illuminance."));
+  std::optional<Prepared> scene = lights_of_result(result, file, request.scene, monitor);
+  if (!scene) return {};
+  auto found = std::make_unique<RaysAndRest>(RaysAndRest{std::move(*scene), {}, {}, {}});
+  found->light.emplace(found->scene.problem());
+  Field E;  // that is left to the result
+  if (request.final_gather > 0) {
+    std::vector<std::uint32_t> all(result.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    found->around.emplace(result, radiance_of(result), std::move(all));
+    E = light_by_gloss(result, *found->light, monitor);
+  } else {
+    E = rest_of_light(result, *found->light, monitor);
+  }
+  if (E.value.empty()) return {};
+  found->rest = is_radiance ? radiance_of(result, E) : illuminance_of(E);
+  return found;
+}
+
 }  // namespace
 
 RenderedView render_view(const WrittenResult& result, const std::filesystem::path& file, const ViewRequest& request,
                          bool as_exr, Observer& observer, const Monitor& monitor) {
   ShownField field = field_of(result, request);
   const Camera camera = choose_camera(result, file, request);
+  std::unique_ptr<RaysAndRest> rays;
+  if (request.wants_lights()) {
+    rays = rays_and_rest(result, file, request, monitor);
+    if (!rays) return {};
+    field = std::move(rays->rest);
+  }
   const std::vector<std::uint32_t> shown = shown_triangles(result, request);
   const ViewScene scene(result, std::move(field), shown);
   warn_when_inside(scene, request, camera, observer);
@@ -116,13 +161,21 @@ RenderedView render_view(const WrittenResult& result, const std::filesystem::pat
   ViewOptions options{.samples = request.samples, .sees_sky = !request.is_drawing()};
   // What is brighter than white is white before a pixel takes its mean, so that bright edges are smooth.
   if (request.shows_colour() && !as_exr) options.most = 1 / (exposure * std::numbers::pi);
+  if (rays) options.fine = &*rays->light, options.gather = request.final_gather;
+  if (rays && rays->around) options.around = &*rays->around;
   ViewImage image = scene.trace(camera, options, monitor);
   RenderedView view;
   if (image.empty()) return view;
   if (std::ranges::all_of(image.seen, [](float s) { return s == 0; }))
     observer.warn("nothing is seen from there: the picture is empty.");
   const bool shows_light = request.shows_colour() || request.show == "luminance";
-  if (shows_light && std::ranges::any_of(result.materials, &Material::is_glossy))
+  if (rays)
+    view.notes.push_back(text(rays->light->empty() ? "the scene has no lamps and no sun for rays to find"
+                                                   : "light straight from lamps and sun by rays",
+                              request.final_gather > 0
+                                  ? text(", all other light by ", request.final_gather, " rays from each place")
+                                  : std::string(", all other light is the result's")));
+  if (shows_light && !rays && std::ranges::any_of(result.materials, &Material::is_glossy))
     view.notes.push_back("glossy surfaces show other surfaces and the sky, not lamps and the sun themselves");
   if (!request.shows_colour() && (request.show == "luminance" || !as_exr)) {
     image.value = one_channel(image.value, image.channels, request.show == "luminance" ? kWhiteEfficacy : 1);

@@ -19,10 +19,15 @@ Lights to_local_frame(const LightSpec& spec, const Vec3& origin) {
   return lights;
 }
 
-Lights place_lights(const LightSpec& spec, const PatchSet& patches, const RayScene& rays) {
+Lights place_lights_for_shadows(const LightSpec& spec, const PatchSet& patches, const RayScene& rays) {
   Lights lights = to_local_frame(spec, patches.origin);
   find_near_planes(lights, patches, rays);
   add_images(lights, patches, rays);
+  return lights;
+}
+
+Lights place_lights(const LightSpec& spec, const PatchSet& patches, const RayScene& rays) {
+  Lights lights = place_lights_for_shadows(spec, patches, rays);
   lights.openings = find_openings(patches, rays, lights);
   return lights;
 }

@@ -13,6 +13,9 @@ namespace clerestory {
 /// Images stand behind mirrors and panes, see find_images.h.
 Lights place_lights(const LightSpec& spec, const PatchSet& patches, const RayScene& rays);
 
+/// The same for shadow rays: without openings.
+Lights place_lights_for_shadows(const LightSpec& spec, const PatchSet& patches, const RayScene& rays);
+
 /// The first of that alone: no images, no openings.
 Lights to_local_frame(const LightSpec& spec, const Vec3& origin);
 

@@ -87,6 +87,10 @@ enum Stream : std::uint64_t {
   kGlossOfRay = 0x8d,
   kGlossPairs = 0x8e,
   kGlossSeen = 0x8f,
+  // Lights and surfaces that a point looks at which is seen in a picture, by pixel; lights of a result's points.
+  kLightsSeen = 0x54,
+  kGatherSeen = 0x55,
+  kLightsOfPoints = 0x56,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.
   kVisibilityPattern = 0x7061747465726e,
 };

@@ -11,6 +11,7 @@
 #include "solver/model/view_image.h"
 #include "solver/model/written_result.h"
 #include "solver/view/camera.h"
+#include "solver/view/fine_light.h"
 #include "solver/visibility/glass_sheet.h"
 #include "solver/visibility/seen_surfaces.h"
 
@@ -28,10 +29,25 @@ struct ShownField {
 /// Radiance of diffuse surfaces, B / pi.
 ShownField radiance_of(const WrittenResult& result);
 
+/// The same fields where only E [W/m2], P x channels, falls on the surfaces: what they send or receive of it, and what
+/// they glow or pass on from behind. Of radiance, else of illuminance [lx].
+ShownField radiance_of(const WrittenResult& result, const Field& E);
+ShownField illuminance_of(const Field& E);
+
+class ViewScene;
+
 struct ViewOptions {
   int samples = 16;      ///< rays a pixel
   bool sees_sky = true;  ///< by radiance; else there is nothing beyond the surfaces
   double most = 1e30;    ///< values above are taken as this, each ray's for itself
+
+  /// Null: the field is all there is. Else each place that is seen has this light besides, which the field leaves out:
+  /// it is radiance, or illuminance of one channel.
+  const FineLight* fine = nullptr;
+  /// With `fine`: so many rays look around from each place that is seen, in a field of radiance that has all light, and
+  /// what they meet lights it, too. 0: the field has that.
+  int gather = 0;
+  const ViewScene* around = nullptr;
 };
 
 class ViewScene {
@@ -42,7 +58,8 @@ class ViewScene {
   /// Empty when the monitor stopped it.
   ///
   /// Threads: same bits for any thread count. Rays are turned by mirrors and panes, and by gloss, each into one
-  /// direction of its lobe, until less than 1 % of the light would come that way, 16 times at most.
+  /// direction of its lobe, or four where light is found by rays, until less than 1 % of the light would come that way,
+  /// 16 times at most. Rays of a gather are turned alike.
   ViewImage trace(const Camera& camera, const ViewOptions& options, const Monitor& monitor = {}) const;
 
   const SeenSurfaces& surfaces() const { return surfaces_; }
@@ -52,7 +69,7 @@ class ViewScene {
   double backs_around(const Vec3& eye) const;
 
  private:
-  class Tile;
+  class Ways;
   struct Pane {
     Vec3 normal;           ///< unit
     Spectrum mirror{0.0};  ///< reflectance
@@ -66,8 +83,10 @@ class ViewScene {
   std::vector<GlassTable> glass_;
   std::vector<Lobe> lobes_;              ///< of glossy materials, where light is shown
   std::vector<int> lobe_of_material_;    ///< below 0: none; empty: there are no lobes
-  std::vector<std::uint32_t> material_;  ///< of the triangles that are shown; empty without lobes
+  std::vector<std::uint32_t> material_;  ///< of the triangles that are shown; empty unless it is radiance
+  std::vector<bool> is_black_;           ///< of them: the back of one-sided material; empty unless it is radiance
   std::vector<float> corner_values_;     ///< 3 x channels a triangle
+  std::vector<Vec3> normal_;             ///< of points, unit: the mean of the facets that share one, by their angles
   SeenSurfaces surfaces_;
 };
 

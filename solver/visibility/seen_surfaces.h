@@ -10,10 +10,11 @@
 
 namespace clerestory {
 
-/// Sixteen rays that go nearly the same way, in the frame of SeenSurfaces; directions of any length.
+/// Sixteen rays in the frame of SeenSurfaces; directions of any length.
 struct SightPacket {
   alignas(64) std::array<float, 16> x, y, z, dx, dy, dz, near;
-  unsigned count = 0;  ///< the first so many are rays
+  unsigned count = 0;         ///< the first so many are rays
+  bool is_scattered = false;  ///< else they go nearly the same way, which is faster
 
   void add(const Vec3& origin, const Vec3& direction, double near_t) {
     const std::size_t k = count++;

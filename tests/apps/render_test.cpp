@@ -129,6 +129,38 @@ TEST_F(Render, SaysWhatDoesNotGoTogether) {
   expect_refused({"--isolux", "100"}, 2, "an EXR holds the values themselves", "32x18", "no.exr");
 }
 
+TEST_F(Render, FindsLightByRaysOnlyInTheSceneThatWasSolved) {
+  const std::vector<std::string> view{"--eye", "1,1,1.2", "--target", "3,2,1"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), view.begin(), view.end());
+    return more;
+  };
+  // What glows is seen by the field, which is all there is without lamps; and a final gather sees the furnace.
+  ASSERT_EQ(render("field.png", view).exit_code, 0);
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--raytrace"}, {"--final-gather", "16"}}) {
+    const ProgramRun run = render("rays.png", with(option));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(text_of("rays.png"), text_of("field.png")) << option.front();
+  }
+  expect_refused(with({"--scene", folder_ / "room.json"}), 2, "--scene is for --camera, --raytrace");
+  expect_refused(with({"--final-gather", "8"}), 2, "--final-gather");
+  expect_refused(with({"--raytrace", "--show", "irradiance"}), 3, "'irradiance' is not found by rays; --raytrace goes");
+  BoxScene other;
+  other.size.z += 0.5;
+  other.write(folder_);
+  expect_refused(with({"--raytrace"}), 3, "Solve it again");
+  other = {};
+  other.rho = 0.4;
+  other.write(folder_);
+  expect_refused(with({"--raytrace"}), 3, "its material 'wall' is another");
+  BoxScene{}.write(folder_);
+  const std::string moved = folder_ / "moved.json";
+  std::filesystem::rename(folder_ / "room.json", moved);
+  expect_refused(with({"--final-gather", "64"}), 3, "not there any more; say where it is: --scene FILE");
+  EXPECT_EQ(render("found.png", with({"--raytrace", "--scene", moved})).exit_code, 0);
+  EXPECT_EQ(text_of("found.png"), text_of("field.png"));
+}
+
 TEST_F(Render, SaysWhenNothingIsSeen) {
   const ProgramRun away = render("view.png", {"--eye", "2,1.5,-3", "--target", "2,1.5,-9"});
   EXPECT_EQ(away.exit_code, 0) << away.err;

@@ -89,5 +89,31 @@ TEST_F(RenderValues, AreTheResultsOwnFieldAtEveryPixel) {
   EXPECT_EQ(plan.at(0, 5, 1), 0) << "beside the floor";
 }
 
+TEST_F(RenderValues, ByRaysAreTheClosedFormOfALampAndOfItsShadow) {
+  // A black room of 4 x 4 m, 1000 lm 2 m above the middle of its floor, and a plate half way: a shadow of 1 x 2 m.
+  folder_.write("floor.obj",
+                "v -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\nv -2 -2 3\nv 2 -2 3\nv 2 2 3\nv -2 2 3\n"
+                "v -0.25 -0.5 1\nv 0.25 -0.5 1\nv 0.25 0.5 1\nv -0.25 0.5 1\n"
+                "o room\nusemtl black\nf 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
+                "o plate\nusemtl black\nf 9 10 11 12\n");
+  const std::string scene = folder_.write("floor.json", R"({ "geometry": [{ "file": "floor.obj" }],
+    "materials": { "black": { "reflectance": 0 } },
+    "luminaires": [{ "type": "point", "position": [0, 0, 2], "luminous_flux": 1000 }] })");
+  result_ = folder_ / "floor.vtp";
+  const ProgramRun solved = run_program({"solve", scene, "-o", result_, "--accuracy", "draft", "--no-error"});
+  ASSERT_EQ(solved.exit_code, 0) << solved.err;
+  const Picture seen = exr({"--plan", "0.5", "--show", "illuminance", "--raytrace", "--samples", "1"});
+  // 4 m and a margin of 2 % at either end in 10 pixels.
+  const double metres = 4 * 1.04 / 10;
+  for (int y = 0; y < 10; ++y)
+    for (int x = 5; x < 15; ++x) {
+      const double px = (x + 0.5 - 10) * metres, py = (5 - y - 0.5) * metres;
+      const bool is_dark = std::abs(px) < 0.5 && std::abs(py) < 1;
+      const double exact = is_dark ? 0 : 1000 / (4 * std::numbers::pi) * 2 / std::pow(4 + px * px + py * py, 1.5);
+      // The vertices' own light is kept as float, and looked at a little beside them.
+      EXPECT_NEAR(double{seen.at(x, y, 0)}, exact, 2e-3 * 20) << px << ' ' << py;
+    }
+}
+
 }  // namespace
 }  // namespace clerestory

@@ -21,7 +21,9 @@ done
   --show luminance --log-scale --size 480x480
 "$program" solve data/scenes/polished_ring.json -o "$results/polished_ring.vtp" --quiet
 "$program" render "$results/polished_ring.vtp" -o docs/pictures/caustic.png --eye 1.5,0.2,1.6 --target 1.5,1.55,0 \
-  --fov 50 --size 800x480 --show illuminance --range 50:600 --log-scale
+  --fov 50 --size 780x440 --show illuminance --range 50:600 --log-scale
+"$program" render "$results/polished_ring.vtp" -o docs/pictures/view_caustic.png --eye 1.5,0.2,1.6 \
+  --target 1.5,1.55,0 --fov 50 --size 780x440 --raytrace
 "$program" solve data/scenes/classroom.json -o "$results/classroom_layers.vtp" --layers --quiet
 "$program" mix "$results/classroom_layers.vtp" -o "$results/classroom_dimmed.vtp" --set windows=0 --set middle=0.5 --quiet
 "$program" render "$results/classroom_dimmed.vtp" -o docs/pictures/view_dimmed.png --plan 1.2 --show illuminance \

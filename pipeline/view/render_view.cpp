@@ -11,12 +11,15 @@
 #include "io/picture/paint_view.h"
 #include "io/read_result.h"
 #include "io/text.h"
+#include "meshing/make_lightmap.h"
 #include "pipeline/view/choose_camera.h"
 #include "pipeline/view/lights_of_result.h"
 #include "pipeline/wording.h"
+#include "solver/illumination/caustic_legs.h"
 #include "solver/model/error.h"
 #include "solver/model/exposure.h"
 #include "solver/model/units.h"
+#include "solver/run/accuracy.h"
 #include "solver/view/rest_of_light.h"
 #include "solver/view/trace_view.h"
 #include "solver/view/visible_line.h"
@@ -110,10 +113,20 @@ ValueScale scale_of(const ViewImage& image, const ViewRequest& request) {
 /// What rays find at each place that is seen, and the field that is left to the result.
 struct RaysAndRest {
   Prepared scene;
+  VertexLightmap points;           ///< of its patches
   std::optional<FineLight> light;  ///< of that
   ShownField rest;
   std::optional<ViewScene> around;  ///< of a final gather: all surfaces, with all light
 };
+
+/// As many as the default method has at `standard`; in a picture fewer tell each place.
+void add_caustics(RaysAndRest& rays, const Monitor& monitor) {
+  constexpr std::size_t kPhotonsOfPlace = 128;
+  const Effort standard = effort(Accuracy::standard);
+  rays.scene.lights.caustics = find_caustics(rays.scene.problem(), static_cast<std::size_t>(standard.caustic_particles),
+                                             kPhotonsOfPlace, 1, monitor);
+  if (!rays.scene.lights.caustics.legs.empty()) rays.points = make_lightmap(rays.scene.patches);
+}
 
 /// Null when interrupted. throws InputError as lights_of_result(), and for quantities that have no such light.
 std::unique_ptr<RaysAndRest> rays_and_rest(const WrittenResult& result, const std::filesystem::path& file,
@@ -125,8 +138,9 @@ std::unique_ptr<RaysAndRest> rays_and_rest(const WrittenResult& result, const st
                           " goes with --show colour, luminance or illuminance."));
   std::optional<Prepared> scene = lights_of_result(result, file, request.scene, monitor);
   if (!scene) return {};
-  auto found = std::make_unique<RaysAndRest>(RaysAndRest{std::move(*scene), {}, {}, {}});
-  found->light.emplace(found->scene.problem());
+  auto found = std::make_unique<RaysAndRest>(RaysAndRest{std::move(*scene), {}, {}, {}, {}});
+  add_caustics(*found, monitor);
+  found->light.emplace(found->scene.problem(), &found->points);
   Field E;  // that is left to the result
   if (request.final_gather > 0) {
     std::vector<std::uint32_t> all(result.triangles.size());

@@ -92,26 +92,39 @@ struct References {
   bool complete = false;
 };
 
-/// References of the caustics at the places of `at`, each by half as many particles, of its own, over kernels of half
-/// the width: their noise is known, and what kernels blur is a quarter.
-void add_caustics(const Problem& problem, bool has_gathers, const PointOf& point_of, std::uint64_t key,
-                  const Monitor& monitor, std::vector<Comparison>& at) {
+/// Caustics at the places of `at`, luminous means, by particles of their own over kernels of half the width of the
+/// result's: what kernels blur is a quarter. parts: of the effort that the result took.
+std::vector<double> other_caustics(const Problem& problem, std::size_t parts, const PointOf& point_of,
+                                   std::size_t count, std::uint64_t key, const Monitor& monitor) {
   const Caustics& caustics = problem.lights.caustics;
-  if (caustics.legs.empty()) return;
-  for (std::uint64_t set = 0; set < (has_gathers ? 3 : 1); ++set) {
-    const auto legs = trace_caustics(problem, caustics.particles / 2, stream_key(key, kErrorCaustics, set), monitor);
-    const CausticIrradiance found =
-        caustic_irradiance(problem, legs, std::max<std::size_t>(1, caustics.legs_of_point / 8), at.size(), point_of);
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      const double E = luminous_mean(found.E[k]);
-      if (set == 0) {
-        at[k].r += E;
-        at[k].std_error = std::sqrt(at[k].std_error * at[k].std_error + found.variance[k]);
-      } else {
-        (set == 1 ? at[k].gather : at[k].other_gather) += E;
-      }
-    }
+  const auto legs = trace_caustics(problem, caustics.particles / parts, key, monitor);
+  const CausticIrradiance found = caustic_irradiance(
+      problem, legs, std::max<std::size_t>(1, caustics.legs_of_point / (4 * parts)), count, point_of);
+  std::vector<double> E(count);
+  for (std::size_t k = 0; k < count; ++k) E[k] = luminous_mean(found.E[k]);
+  return E;
+}
+
+/// Adds them to the references, each by particles of its own; to those of paths in replicates, which tell their noise.
+void add_caustics(const Problem& problem, const PointOf& point_of, std::uint64_t key, const Monitor& monitor,
+                  std::vector<Comparison>& at) {
+  if (problem.lights.caustics.legs.empty()) return;
+  constexpr std::size_t kParts = 2;
+  const auto found = [&](std::size_t parts, std::uint64_t set) {
+    return other_caustics(problem, parts, point_of, at.size(), stream_key(key, kErrorCaustics, set), monitor);
+  };
+  std::vector<PathSum> of_paths(at.size());
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    const std::vector<double> E = found(kParts * kReplicates, 2 + r);
+    for (std::size_t k = 0; k < at.size(); ++k) of_paths[k].add(Spectrum(E[k]));
   }
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    at[k].r += of_paths[k].mean()[0];
+    at[k].std_error = std::hypot(at[k].std_error, of_paths[k].std_error()[0]);
+  }
+  if (at.empty() || at.front().gather < 0) return;
+  const std::vector<double> one = found(kParts, 0), two = found(kParts, 1);
+  for (std::size_t k = 0; k < at.size(); ++k) at[k].gather += one[k], at[k].other_gather += two[k];
 }
 
 /// Traces paths for references at the places of samples whose x is set, as many as the effort allows. Stopped by the
@@ -179,7 +192,7 @@ Compared compare(const Problem& whole, const std::vector<Comparison>& samples, c
     for (std::size_t k = 0; k < found.size(); ++k) all.at[k].gather = found[k][0], all.at[k].other_gather = found[k][1];
   }
   add_caustics(
-      whole, all.complete, [&](std::size_t k) { return point_of(number_of(k)); }, key, monitor, all.at);
+      whole, [&](std::size_t k) { return point_of(number_of(k)); }, key, monitor, all.at);
   return {std::move(all.at), std::move(reference)};
 }
 

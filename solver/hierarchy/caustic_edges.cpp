@@ -39,19 +39,20 @@ struct Parts {
 
 std::size_t halve_at_caustics(ElementMesh& mesh, const Problem& before, std::span<const std::uint32_t> numbers,
                               const Field& E, const RefineOptions& options, const Monitor& monitor) {
-  const std::vector<CausticLeg>& legs = before.lights.caustics.legs;
+  const std::span<const CausticLeg> legs = before.lights.caustics.legs;
   if (legs.empty()) return 0;
   std::vector<double> rest(E.size());  // light of an element that is no caustic
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = luminous_mean(E[i]);
-  for (const CausticLanding& l : landings_of(before, legs))
-    rest[l.patch] -= luminous_mean(l.flux) / before.patches.area[l.patch];
+  each_landing(before, legs,
+               [&](const CausticLanding& l) { rest[l.patch] -= luminous_mean(l.flux) / before.patches.area[l.patch]; });
   std::size_t halved = 0;
   for (int pass = 0; pass < kMostHalvings && !monitor.should_stop(); ++pass) {
     const std::vector<std::uint32_t> leaves = mesh.leaves();
     const PatchSet patches = mesh.leaf_patches();
     std::vector<Parts> parts(leaves.size());
-    for (const CausticLanding& l : landings_of({patches, before.rays, before.lights}, legs))
+    each_landing({patches, before.rays, before.lights}, legs, [&](const CausticLanding& l) {
       parts[l.patch].add(mesh.corner_positions(leaves[l.patch]), l.place, luminous_mean(l.flux));
+    });
     std::vector<std::uint32_t> marked;
     for (std::size_t j = 0, i = 0; j < numbers.size(); ++j)
       for (const std::size_t end = i + mesh.leaves_under(numbers[j]); i < end; ++i) {

@@ -190,25 +190,19 @@ Caustics find_caustics(const Problem& problem, std::size_t particles, std::size_
   return found;
 }
 
-std::vector<CausticLanding> landings_of(const Problem& problem, const std::vector<CausticLeg>& legs) {
-  const PatchSet& patches = problem.patches;
-  std::vector<CausticLanding> landings;
-  for (const CausticLeg& leg : legs) {
-    if (!leg.triangle.valid()) continue;
-    const PatchId patch =
-        patches.patch_at(leg.triangle, leg.on_front ? kFront : kBack, double{leg.uv[0]}, double{leg.uv[1]});
-    if (!patch.valid()) continue;
-    const Spectrum flux(double{leg.flux[0]}, double{leg.flux[1]}, double{leg.flux[2]});
-    landings.push_back(
-        {patch, vec(leg.to), leg.light, flux * problem.rays.glass_transmittance(vec(leg.from), vec(leg.to))});
-  }
-  return landings;
+CausticLanding landing_of(const Problem& problem, const CausticLeg& leg) {
+  if (!leg.triangle.valid()) return {};
+  const PatchId patch =
+      problem.patches.patch_at(leg.triangle, leg.on_front ? kFront : kBack, double{leg.uv[0]}, double{leg.uv[1]});
+  if (!patch.valid()) return {};
+  const Vec3 from = vec(leg.from), to = vec(leg.to);
+  const Spectrum flux(double{leg.flux[0]}, double{leg.flux[1]}, double{leg.flux[2]});
+  return {patch, to, normalized(to - from), leg.light, flux * problem.rays.glass_transmittance(from, to)};
 }
 
-Field caustics_on_patches(const Problem& problem, const std::vector<CausticLeg>& legs) {
+Field caustics_on_patches(const Problem& problem, std::span<const CausticLeg> legs) {
   Field E(problem.patches.patch_count(), problem.patches.channels);
-  for (const CausticLanding& landing : landings_of(problem, legs))
-    E.add(landing.patch, landing.flux / problem.patches.area[landing.patch]);
+  each_landing(problem, legs, [&](const CausticLanding& l) { E.add(l.patch, l.flux / problem.patches.area[l.patch]); });
   return E;
 }
 

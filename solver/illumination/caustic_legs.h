@@ -2,6 +2,7 @@
 // Caustics: particles over surfaces that turn the light of luminaires and suns and show no image of them.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solver/illumination/problem.h"
@@ -30,14 +31,21 @@ std::vector<CausticLeg> trace_caustics(const Problem& problem, std::size_t parti
 /// Flux that arrives at a patch [W].
 struct CausticLanding {
   PatchId patch;
-  Vec3 place;           ///< local frame [m]
-  std::uint32_t light;  ///< as in CausticLeg
+  Vec3 place;               ///< local frame [m]
+  Vec3 direction;           ///< unit, of its way
+  std::uint32_t light = 0;  ///< as in CausticLeg
   Spectrum flux;
 };
-/// Where legs end on patches of the problem, in the order of the legs.
-std::vector<CausticLanding> landings_of(const Problem& problem, const std::vector<CausticLeg>& legs);
+/// Of a leg; its patch is invalid where it ends on none of the problem's.
+CausticLanding landing_of(const Problem& problem, const CausticLeg& leg);
+/// Calls take(landing) where legs end on patches of the problem, in their order.
+template <class Take>
+void each_landing(const Problem& problem, std::span<const CausticLeg> legs, const Take& take) {
+  for (const CausticLeg& leg : legs)
+    if (const CausticLanding landing = landing_of(problem, leg); landing.patch.valid()) take(landing);
+}
 
 /// Irradiance of each patch by them, N x channels [W/m2].
-Field caustics_on_patches(const Problem& problem, const std::vector<CausticLeg>& legs);
+Field caustics_on_patches(const Problem& problem, std::span<const CausticLeg> legs);
 
 }  // namespace clerestory

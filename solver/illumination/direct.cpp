@@ -100,12 +100,12 @@ void balance_luminaires(const Problem& problem, std::span<const Beam> beams, Dir
 
 /// Caustics that land on patches: of luminaires and suns like all direct light.
 void add_caustics(const Problem& problem, std::vector<LightRow>& row_of_patch, DirectLight& direct) {
-  for (const auto& [patch, place, light, flux] : landings_of(problem, problem.lights.caustics.legs)) {
-    const Spectrum E = flux / problem.patches.area[patch];
-    direct.E.add(patch, E);
-    if (is_sun(problem.lights, light)) direct.energy.emitted += luminous_mean(flux);
-    if (!row_of_patch.empty()) add_to_row(row_of_patch[patch], light, E);
-  }
+  each_landing(problem, problem.lights.caustics.legs, [&](const CausticLanding& landing) {
+    const Spectrum E = landing.flux / problem.patches.area[landing.patch];
+    direct.E.add(landing.patch, E);
+    if (is_sun(problem.lights, landing.light)) direct.energy.emitted += luminous_mean(landing.flux);
+    if (!row_of_patch.empty()) add_to_row(row_of_patch[landing.patch], landing.light, E);
+  });
 }
 
 /// Rows of all patches in one, and what suns bring in.

@@ -4,6 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "solver/model/channels.h"
@@ -31,9 +34,24 @@ struct CausticLeg {
   std::array<float, 2> uv;        ///< weights of its corners 1 and 2
 };
 
+/// Legs that copies have in common.
+class CausticLegs {
+ public:
+  CausticLegs() = default;
+  CausticLegs(std::vector<CausticLeg> legs) : legs_(std::make_shared<const std::vector<CausticLeg>>(std::move(legs))) {}
+
+  operator std::span<const CausticLeg>() const {
+    return legs_ ? std::span<const CausticLeg>(*legs_) : std::span<const CausticLeg>();
+  }
+  bool empty() const { return !legs_ || legs_->empty(); }
+
+ private:
+  std::shared_ptr<const std::vector<CausticLeg>> legs_;
+};
+
 struct Caustics {
   std::vector<CausticSide> sides;
-  std::vector<CausticLeg> legs;
+  CausticLegs legs;
   std::size_t particles = 0;  ///< that were sent; each has no leg, or some
   /// About so many legs tell the irradiance at a point: more are less noise, and more blur.
   std::size_t legs_of_point = 0;

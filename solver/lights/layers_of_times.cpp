@@ -16,7 +16,7 @@ std::vector<CausticLeg> legs_at(const Lights& mean, std::size_t t) {
   for (std::size_t k = 0; k < mean.suns.size(); ++k)
     if (!mean.suns[k].time || *mean.suns[k].time == t) number[k] = count++;
   std::vector<CausticLeg> legs;
-  for (CausticLeg leg : mean.caustics.legs) {
+  for (CausticLeg leg : std::span<const CausticLeg>(mean.caustics.legs)) {
     if (leg.light >= luminaires) {
       const std::size_t k = leg.light - luminaires;
       if (number[k] == CausticLeg::kNone) continue;

@@ -1,16 +1,12 @@
 #include "solver/particles/photon_map.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "solver/model/parallel.h"
 #include "solver/model/streams.h"
 
 namespace clerestory {
 namespace {
-
-/// Of those in a bucket patches of the same surface count, and of a curved one its neighbours: cosine.
-constexpr double kAlike = 0.9;
 
 struct Place {
   std::array<float, 3> at;
@@ -113,19 +109,11 @@ std::vector<Landing> send_photons(const Illumination& light, std::size_t particl
 
 Spectrum irradiance(const PhotonMap& map, const SmoothSurface& surface, const Vec3& p, PatchId patch, std::size_t count,
                     double radius, PhotonsAround& room) {
-  const Vec3& n = surface.patches().normal[patch];
-  const double within = map.nearest(p, radius, count, room.found, [&](const Landing& photon) {
-    return dot(surface.patches().normal[photon.patch], n) > kAlike;
-  });
-  if (room.found.empty()) return Spectrum(0.0);
-  const SurfaceKernel kernel =
-      surface.kernel(p, {&patch.value, 1}, std::sqrt(within), KernelShape::epanechnikov, room.parts);
   Spectrum E(0.0);
-  for (const PhotonMap::Neighbour& at : room.found) {
-    const Landing photon = map[at.photon];
+  photons_around(map, surface, p, patch, count, radius, room, [&](const Landing& photon, double weight) {
     const auto& [r, g, b] = photon.flux;
-    E += Spectrum(double{r}, double{g}, double{b}) * kernel.weight(photon.position, 0);
-  }
+    E += Spectrum(double{r}, double{g}, double{b}) * weight;
+  });
   return {std::max(0.0, E[0]), std::max(0.0, E[1]), std::max(0.0, E[2])};
 }
 

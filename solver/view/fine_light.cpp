@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/illumination/image_beams.h"
+#include "solver/illumination/one_light.h"
 #include "solver/lights/luminaire.h"
 #include "solver/lights/near_planes.h"
 #include "solver/lights/sun.h"
@@ -30,17 +31,9 @@ struct FineLight::Candidate {
   const MirrorWay* way = nullptr;
 };
 
-FineLight::FineLight(const Problem& problem) : problem_(problem), gloss_(problem_) {
-  if (luminaires() + suns() <= kMostCandidates) return;
-  std::vector<LightBounds> bounds_of;
-  for (const PlacedLuminaire& luminaire : problem_.lights.luminaires) {
-    bounds_of.push_back(bounds(luminaire));
-    bounds_of.back().power *= luminaire.share;
-  }
-  std::vector<LightChoice::Sun> suns_of;
-  for (const PlacedSun& sun : problem_.lights.suns)
-    suns_of.push_back({sun.direction, sun.share * luminous_mean(sun.normal_irradiance)});
-  choice_ = LightChoice(bounds_of, suns_of, problem_.rays.diameter());
+FineLight::FineLight(const Problem& problem, const VertexLightmap* points) : problem_(problem), gloss_(problem_) {
+  if (points && !problem_.lights.caustics.legs.empty()) caustics_.emplace(problem_, *points);
+  if (luminaires() + suns() > kMostCandidates) choice_ = choice_of_lights(problem_);
 }
 
 FineLight::Candidate FineLight::candidate(std::uint32_t light, const Vec3& p, const SeenPlace& at, double u,
@@ -121,6 +114,11 @@ Spectrum FineLight::sent_on(const SeenPlace& at, const Draw& draw) const {
   return sent;
 }
 
+Spectrum FineLight::caustics(const SeenPlace& at) const {
+  if (!caustics_) return Spectrum(0.0);
+  return caustics_->sent_on(at.p - problem_.patches.origin, at.facet, at.to_eye, at.diffuse, at.lobe);
+}
+
 Spectrum FineLight::by_gloss(const Vec3& p, const Vec3& n, int pairs, std::uint64_t key) const {
   return gloss_.irradiance(problem_.rays.off_surface(p - problem_.patches.origin, n), n, pairs, key).sum();
 }
@@ -129,6 +127,7 @@ StraightLight FineLight::at_point(const Vec3& place, const Vec3& n) const {
   const RayScene& rays = problem_.rays;
   const Vec3 p = rays.off_surface(place - problem_.patches.origin, n);
   StraightLight found;
+  found.E = found.low = found.high = caustics({.p = place, .facet = n, .n = n, .to_eye = n});
   SeenPlace at;
   at.n = n;
   const auto look = [&](std::uint32_t light, int count, const auto& point) {

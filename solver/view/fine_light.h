@@ -2,10 +2,12 @@
 // Light straight from luminaires and suns at the very place that is seen: finer than the vertices of a result.
 
 #include <cstdint>
+#include <optional>
 
 #include "solver/illumination/gloss_light.h"
 #include "solver/illumination/problem.h"
 #include "solver/lights/light_choice.h"
+#include "solver/view/caustic_photons.h"
 
 namespace clerestory {
 
@@ -37,15 +39,18 @@ struct StraightLight {
 class FineLight {
  public:
   /// problem  the scene that was solved, with images of its lights; outlives this
-  explicit FineLight(const Problem& problem);
+  /// points   null, or the lightmap of its patches, for its caustics; outlives this
+  explicit FineLight(const Problem& problem, const VertexLightmap* points = nullptr);
 
   /// There are no luminaires and no suns.
   bool empty() const { return luminaires() + suns() == 0; }
 
   /// What the place sends to the eye of light that comes to it straight from luminaires and suns, over mirrors and
   /// through panes too: diffuse E + sum of lobe E_light. All light at a place that is sharper than the field of
-  /// vertices comes from here.
+  /// vertices is this and caustics().
   Spectrum sent_on(const SeenPlace& at, const Draw& draw) const;
+  /// The same of caustics, by the photons around it: smooth within a pixel.
+  Spectrum caustics(const SeenPlace& at) const;
 
   /// Irradiance of a plane of unit normal n at p (scene's frame), by up to 16 shadow rays to each light.
   StraightLight at_point(const Vec3& p, const Vec3& n) const;
@@ -61,6 +66,7 @@ class FineLight {
   Candidate candidate(std::uint32_t light, const Vec3& p, const SeenPlace& at, double u, double v) const;
 
   const Problem problem_;
+  std::optional<CausticPhotons> caustics_;
   LightChoice choice_;  ///< empty unless lights are too many to look at all
   GlossLight gloss_;
 };

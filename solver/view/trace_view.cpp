@@ -275,9 +275,18 @@ class ViewScene::Ways {
                                               : scene_.result_.materials[material].reflectance / std::numbers::pi;
     }
     const Draw draw = draw_of(way);
-    Spectrum sent = options_.fine->sent_on(at, draw);
+    Spectrum sent = options_.fine->sent_on(at, draw) + caustics(way, triangle, at);
     if (inner_ && !at.diffuse.is_black()) sent += at.diffuse * gathered(at, draw, rays_for(way));
     return scene_.field_.is_radiance ? sent : Spectrum(photometric(sent));
+  }
+
+  /// They are dear, and smooth within a pixel: one ray of four looks for all that meet one triangle straight.
+  Spectrum caustics(const Way& way, std::uint32_t triangle, const SeenPlace& at) {
+    if (way.turns > 0) return options_.fine->caustics(at);
+    if (last_.uses == kOneOf || last_.pixel != way.pixel || last_.triangle != triangle)
+      last_ = {way.pixel, triangle, 0, options_.fine->caustics(at)};
+    ++last_.uses;
+    return last_.caustics;
   }
 
   /// Of a gather at a place that is seen along this way: fewer where little of it is seen. A multiple of kOneOf.
@@ -395,6 +404,11 @@ class ViewScene::Ways {
   std::array<Way, kLanes> ways_;
   std::size_t waiting_ = 0;
   std::vector<Way> through_, back_;
+  struct {
+    std::uint32_t pixel = 0, triangle = 0;
+    int uses = kOneOf;
+    Spectrum caustics;
+  } last_;                       ///< of those that were looked for
   std::unique_ptr<Ways> inner_;  ///< of a gather: rays from one place after the other
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 
 namespace clerestory {
@@ -22,12 +23,45 @@ Corners corners_of(const PatchSet& patches, TriangleId t) {
   return {{patches.vertices[corner[0]], patches.vertices[corner[1]], patches.vertices[corner[2]]}};
 }
 
+/// That the triangle lies in; their count: none.
+std::size_t number_of(const std::vector<MirrorPlane>& planes, const Corners& triangle, double diameter) {
+  const Vec3 n = triangle.unit_normal();
+  const auto same = [&](const MirrorPlane& plane) {
+    return length(cross(plane.normal, n)) < 1e-6 && std::abs(plane.height(triangle.x[0])) < 1e-6 * diameter;
+  };
+  return static_cast<std::size_t>(std::ranges::find_if(planes, same) - planes.begin());
+}
+
 void add_to(MirrorPlane& plane, const Corners& triangle) {
   for (const Vec3& x : triangle.x) plane.add(x);
 }
 
+/// Planes of mirrors as they come; nothing where they are more than those that show images.
+std::optional<std::vector<MirrorPlane>> few_planes(const PatchSet& patches, double diameter) {
+  std::vector<MirrorPlane> planes;
+  for (std::size_t i = 0; i < patches.triangle_count(); ++i) {
+    const TriangleId t{i};
+    if (!patches.front_material(t).turns_rays()) continue;
+    const Corners triangle = corners_of(patches, t);
+    const Vec3 n = triangle.unit_normal();
+    if (!(length(n) > 0.5)) continue;  // without area
+    const auto number = number_of(planes, triangle, diameter);
+    if (number < planes.size()) continue;
+    if (planes.size() == kMostPlanes) return {};
+    planes.push_back(mirror_plane(n, dot(n, triangle.x[0]), false));
+  }
+  return planes;
+}
+
 void find_mirrors(const PatchSet& patches, double diameter, TurningPlanes& found) {
   auto& planes = found.planes;
+  if (auto few = few_planes(patches, diameter)) {
+    planes = std::move(*few);
+  } else {
+    const auto is_mirror = [&](TriangleId t) { return patches.front_material(t).turns_rays(); };
+    for (const TrianglesInPlane& same : largest_planes(patches, diameter, is_mirror, true))
+      planes.push_back(mirror_plane(same.plane.normal, same.plane.offset, false));
+  }
   for (std::size_t i = 0; i < patches.triangle_count(); ++i) {
     const TriangleId t{i};
     if (!patches.front_material(t).turns_rays()) continue;
@@ -35,11 +69,7 @@ void find_mirrors(const PatchSet& patches, double diameter, TurningPlanes& found
     const Vec3 a = triangle.x[0], n = triangle.unit_normal();
     if (!(length(n) > 0.5)) continue;  // without area
     if (found.mirrors.empty()) found.mirror_of_triangle.assign(patches.triangle_count(), TurningPlanes::kNoMirror);
-    const auto same = [&](const MirrorPlane& plane) {
-      return length(cross(plane.normal, n)) < 1e-6 && std::abs(plane.height(a)) < 1e-6 * diameter;
-    };
-    const auto number = static_cast<std::size_t>(std::ranges::find_if(planes, same) - planes.begin());
-    if (number == planes.size() && number < kMostPlanes) planes.push_back(mirror_plane(n, dot(n, a), false));
+    const std::size_t number = number_of(planes, triangle, diameter);
     found.mirror_of_triangle[t] = static_cast<std::uint32_t>(found.mirrors.size());
     const bool shows = number < planes.size();
     const Vec3 normal = shows ? planes[number].normal : n;
@@ -54,7 +84,7 @@ void find_glass_planes(const PatchSet& patches, double diameter, TurningPlanes& 
   for (std::size_t i = 0; i < patches.triangle_count() && found.glass_plane.empty(); ++i)
     if (is_glass(TriangleId{i})) found.glass_plane.assign(patches.triangle_count(), kNoPlane);
   if (found.glass_plane.empty()) return;
-  for (TrianglesInPlane& panes : largest_planes(patches, diameter, is_glass)) {
+  for (TrianglesInPlane& panes : largest_planes(patches, diameter, is_glass, false)) {
     panes.plane.is_glass = true;
     for (const TriangleId t : panes.triangles) found.glass_plane[t] = static_cast<std::uint32_t>(found.planes.size());
     found.planes.push_back(panes.plane);
@@ -64,7 +94,7 @@ void find_glass_planes(const PatchSet& patches, double diameter, TurningPlanes& 
 }  // namespace
 
 std::vector<TrianglesInPlane> largest_planes(const PatchSet& patches, double diameter,
-                                             const std::function<bool(TriangleId)>& belongs) {
+                                             const std::function<bool(TriangleId)>& belongs, bool particles_follow) {
   // Planes that rounding tells apart are two: their triangles are, too.
   std::map<std::array<long, 4>, TrianglesInPlane> by_plane;
   for (std::size_t i = 0; i < patches.triangle_count(); ++i) {
@@ -82,6 +112,11 @@ std::vector<TrianglesInPlane> largest_planes(const PatchSet& patches, double dia
   std::vector<TrianglesInPlane> all;
   for (auto& [key, same] : by_plane) all.push_back(std::move(same));
   std::ranges::stable_sort(all, std::greater<>(), &TrianglesInPlane::area);
+  if (particles_follow && all.size() > kMostPlanes) {
+    double area = 0;
+    for (const TrianglesInPlane& same : all) area += same.area;
+    std::erase_if(all, [&](const TrianglesInPlane& same) { return same.area < area / kMostPlanes; });
+  }
   all.resize(std::min(kMostPlanes, all.size()));
   for (TrianglesInPlane& same : all) {
     const Corners first = corners_of(patches, same.triangles[0]);

@@ -35,11 +35,13 @@ struct TrianglesInPlane {
   double area = 0;
   std::vector<TriangleId> triangles;
 };
-/// The 64 planes of largest area of the triangles that `belongs` is true of, the largest first.
+/// The 64 planes of largest area of the triangles that `belongs` is true of, the largest first. Where there are more,
+/// and particles follow light over those without one (illumination/caustic_legs.h), only what has a 64th of all area:
+/// facets of curved surfaces have none.
 std::vector<TrianglesInPlane> largest_planes(const PatchSet& patches, double diameter,
-                                             const std::function<bool(TriangleId)>& belongs);
+                                             const std::function<bool(TriangleId)>& belongs, bool particles_follow);
 
-/// Planes of mirrors as they come; of glass those of largest area.
+/// Planes of mirrors, as they come where they are 64 or fewer; of glass those of largest area.
 /// diameter  of the model [m]: a millionth of it tells planes apart.
 TurningPlanes find_turning_planes(const PatchSet& patches, double diameter);
 

@@ -42,7 +42,7 @@ Lights sun_at(const Vec3& direction) {
 }
 double landed(const test::LitPatches& scene) {
   double sum = 0;
-  for (const CausticLanding& l : landings_of(scene.problem, scene.lights.caustics.legs)) sum += l.flux[0];
+  each_landing(scene.problem, scene.lights.caustics.legs, [&](const CausticLanding& l) { sum += l.flux[0]; });
   return sum;
 }
 
@@ -50,7 +50,7 @@ double landed(const test::LitPatches& scene) {
 // it at the angle a from its middle and the height s over a plane goes on in plan along (-cos 2 a, sin 2 a) by s:
 //   x = -cos a + s cos 2 a,  y = sin a - s sin 2 a,   E = rho E_sun sin 45 cos a / |cos a - 2 s|
 constexpr double kEnd = 50 * kPi / 180, kHeight = 0.5, kPerAngle = kReflectance * kSunlight / std::numbers::sqrt2;
-constexpr int kFacets = 400, kWithImages = 64;  // the first
+constexpr int kFacets = 400;
 PatchBuilder cylinder() {
   PatchBuilder b(0);
   b.rectangle({-1.2, -1.2, 0}, {2.4, 0, 0}, {0, 2.4, 0});
@@ -62,8 +62,7 @@ PatchBuilder cylinder() {
   for (int k = 0; k < kFacets; ++k) b.rectangle(at(k), at(k + 1) - at(k), {0, 0, kHeight});
   return b;
 }
-/// Flux of those that have no images.
-const double kAll = kPerAngle * kHeight * (std::sin(kEnd) + std::sin(kEnd * (1 - 2.0 * kWithImages / kFacets)));
+const double kAll = kPerAngle * kHeight * 2 * std::sin(kEnd);  // flux of all of them
 /// Of one way to a place in the plane at height z: where it is, and what it brings.
 struct OnPlane {
   Vec3 place;
@@ -81,7 +80,7 @@ TEST(CausticLight, OfACylinderIsTheNephroidOfTheClosedFormOnTheFloorAndInTheAir)
   std::vector<ReceivingPoint> points;
   std::vector<double> expected;
   for (const double z : {0.0, 0.1})
-    for (const double a : {-30.0, -10.0, 5.0, 25.0})
+    for (const double a : {-25.0, -10.0, 5.0, 25.0})
       for (const double s : {0.1, 0.18, 0.26}) {
         const OnPlane at = on_plane(a * kPi / 180, s, z);
         points.push_back({at.place + Vec3{0, 0, z > 0 ? 0 : scene.rays.lift()}, {0, 0, 1}});
@@ -166,7 +165,7 @@ TEST(CausticLight, OfAParaboloidGoesToItsFocus) {
 }
 
 TEST(CausticLight, OfCurvedGlossIsWhatRaysAllAroundFindWithPatience) {
-  // Lobes just narrow enough to be left to particles, in 80 planes: 16 of them are.
+  // Lobes just narrow enough to be left to particles, in 80 planes.
   PatchBuilder b(0);
   b.rectangle({-2, -2, 0}, {4, 0, 0}, {0, 4, 0});
   b.glossy(0, {Spectrum(0.8), 60.0, 1});
@@ -181,7 +180,7 @@ TEST(CausticLight, OfCurvedGlossIsWhatRaysAllAroundFindWithPatience) {
   lamps.luminaires = {test::point_lamp({0.1, 0.1, 1.2}, 100), test::point_lamp({0.4, -0.4, 0.9}, 60)};
   const PatchSet patches = b.build();
   const test::LitPatches scene = lit(patches, lamps, 1 << 17, 400), without(patches, lamps);
-  ASSERT_EQ(scene.lights.caustics.sides.size(), 2u * 2 * 16);
+  ASSERT_EQ(scene.lights.caustics.sides.size(), 2u * 2 * 80);
   const GlossLight rest(scene.problem), all(without.problem);
   for (const Vec3& p : {Vec3{0, 0, 0.01}, Vec3{0.3, -0.2, 0.3}, Vec3{-0.4, 0.3, 0.2}}) {
     const double reference = all.irradiance(p, {0, 0, 1}, 1 << 17, 3).sum()[0];
@@ -199,14 +198,15 @@ TEST(CausticLight, IsPartOfDirectLightAndOfItsRows) {
   lights.luminaires = {test::point_lamp({0.5, 0, 1}, 50)};
   const test::LitPatches scene = lit(cylinder().build(), lights, 1 << 14, 100);
   test::LitPatches without = lit(cylinder().build(), lights, 1 << 14, 100);
-  without.lights.caustics.legs = {};
+  without.lights.caustics = {};
   DirectRows rows;
   const DirectLight with = direct_light(Illumination(scene.problem), {}, {}, &rows),
                     bare = direct_light(Illumination(without.problem), {});
   const Field caustics = caustics_on_patches(scene.problem, scene.lights.caustics.legs);
   double by_sun = 0;
-  for (const CausticLanding& l : landings_of(scene.problem, scene.lights.caustics.legs))
+  each_landing(scene.problem, scene.lights.caustics.legs, [&](const CausticLanding& l) {
     if (l.light == 1) by_sun += l.flux[0];
+  });
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_GT(caustics[i][0], 0);
     EXPECT_NEAR(with.E[i][0], bare.E[i][0] + caustics[i][0], 1e-9 * with.E[i][0]);
@@ -227,7 +227,8 @@ TEST(CausticLight, OfOneOfSeveralTimesIsThatOfItsSun) {
   const test::LitPatches scene = lit(cylinder().build(), mean, 1 << 14, 100);
   for (std::size_t t = 0; t < 2; ++t) {
     double flux = 0;
-    for (const CausticLeg& leg : lights_at(scene.lights, t).caustics.legs) {
+    const Lights then = lights_at(scene.lights, t);
+    for (const CausticLeg& leg : std::span<const CausticLeg>(then.caustics.legs)) {
       EXPECT_EQ(leg.light, 0u);
       flux += double{leg.flux[0]};
     }
@@ -255,7 +256,7 @@ TEST(CausticLight, IsTheSameForAnyNumberOfThreads) {
 class CausticOfMethod : public testing::TestWithParam<Method> {};
 
 TEST_P(CausticOfMethod, IsThatOfParticlesThatKnowNoOtherWay) {
-  // Half a ring of 320 facets and a lamp in a room: the light on the floor inside of the ring, much of it the caustic,
+  // Half a ring of 100 facets and a lamp in a room: the light on the floor inside of the ring, much of it the caustic,
   // and on the ceiling, where a part of it goes on.
   PatchBuilder b(0.5);
   b.rectangle({0, 0, 0}, {3, 0, 0}, {0, 1.5, 0}, 3, 2).rectangle({0, 2.2, 0}, {3, 0, 0}, {0, 0.8, 0}, 3, 1);
@@ -268,10 +269,10 @@ TEST_P(CausticOfMethod, IsThatOfParticlesThatKnowNoOtherWay) {
   b.rectangle({0, 0, 0}, {0, 0, 2}, {3, 0, 0}, 2, 3).rectangle({0, 3, 0}, {3, 0, 0}, {0, 0, 2}, 3, 2);
   b.mirror(0.9);
   const auto at = [](int k) {
-    const double a = kPi * k / 320;
+    const double a = kPi * k / 100;
     return Vec3{1.5 + 0.5 * std::cos(a), 1.6 + 0.5 * std::sin(a), 0.001};
   };
-  for (int k = 0; k < 320; ++k) b.rectangle(at(k), at(k + 1) - at(k), {0, 0, 0.3});
+  for (int k = 0; k < 100; ++k) b.rectangle(at(k), at(k + 1) - at(k), {0, 0, 0.3});
   LightSpec spec;
   spec.luminaires = {test::point_lamp({1.5, 0.7, 1.2}, 10)};
   const PatchSet patches = b.build();
@@ -310,7 +311,7 @@ TEST_P(CausticOfMethod, IsThatOfParticlesThatKnowNoOtherWay) {
   double caustic = 0;
   const Field E = caustics_on_patches(problem, lights.caustics.legs);
   for (std::size_t i = first; i < end; ++i) caustic += E[i][0] * patches.area[i];
-  EXPECT_GT(caustic, 0.15 * flux(patches, reference.E, false));
+  EXPECT_GT(caustic, 0.2 * flux(patches, reference.E, false));
   const EnergyBalance& energy = solved.solution.energy;
   EXPECT_NEAR(energy.absorbed + energy.escaped, energy.emitted, noise * energy.emitted);
 }

@@ -94,7 +94,8 @@ std::optional<PreparedToSolve> with_points(std::optional<Prepared> prepared, con
   VertexLightmap map = make_lightmap(prepared->patches);
   const Effort e = effort(options.accuracy, options.tighten);
   prepared->lights.caustics = find_caustics(prepared->problem(), static_cast<std::size_t>(e.caustic_particles),
-                                            static_cast<std::size_t>(e.caustic_legs), options.seed, monitor);
+                                            static_cast<std::size_t>(e.caustic_legs), options.seed, monitor,
+                                            options.method != Method::bidirectional);
   lap.add_to(seconds.build);
   return PreparedToSolve{std::move(*prepared), std::move(map)};
 }

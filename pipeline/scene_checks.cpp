@@ -174,17 +174,6 @@ std::vector<std::size_t> warn_about_sensors(const Problem& problem, const std::s
   return planes;
 }
 
-/// Paths from both ends meet at surfaces; what a curved mirror sends to the very place that is asked for they do not
-/// find.
-void warn_about_caustics(const Problem& problem, const std::string& file, Method method, Observer& observer) {
-  if (method != Method::bidirectional || problem.lights.caustics.sides.empty()) return;
-  observer.warn(
-      file +
-      ": mirrors or narrow gloss lie in more than 64 planes, as curved ones do: what the smaller of them send "
-      "on of lamps and the sun is missing where it arrives, or noisy, and counts where surfaces send it on. "
-      "All other methods have it.");
-}
-
 }  // namespace
 
 bool has_light(const Scene& scene) {
@@ -234,7 +223,6 @@ std::vector<std::size_t> warn_about_places(const Problem& problem, const Scene& 
              "one after another, or each with very little); ",
              method == Method::particles ? "at sensors and in the measured error it is missing."
                                          : "it is missing where it arrives. --method particles has it on surfaces."));
-  warn_about_caustics(problem, scene.file, method, observer);
   return warn_about_sensors(problem, scene.file, sensors, observer);
 }
 

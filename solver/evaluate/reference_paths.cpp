@@ -14,33 +14,48 @@ namespace {
 constexpr std::size_t kPoints = 16;
 constexpr int kPaths = 32;         // of each kind, at each point
 constexpr double kMuchBetter = 4;  // variance for the same rays; a pilot knows it to a factor of two
-constexpr double kMissed = 0.3;    // of the light
+constexpr double kMissed = 0.2;    // of the light, in the mean of the points
+constexpr double kSure = 3;        // standard errors of that
 constexpr double kNarrow = 1000;   // exponent of lobes that particles meet by chance only
 
-/// Over the points.
 struct Pilot {
-  double E = 0, variance = 0;
+  std::vector<double> E, variance;  ///< by point, luminous means
   unsigned long long rays = 0;
 };
 
 Pilot pilot(const PathEstimator& estimator, std::size_t points, const PointOf& point_of, std::uint64_t key,
             const Monitor& monitor) {
   const std::size_t count = std::min(points, kPoints);
-  std::vector<PathEstimate> found(count);
+  Pilot found{std::vector<double>(count), std::vector<double>(count)};
   std::vector<unsigned long long> rays(count, 0);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       const auto [p, n] = point_of(k * points / count);
-      found[k] = trace_paths_at_point(estimator, p, n, stream_key(key, k), kPaths, rays[k], monitor);
+      const auto [E, std_error] = trace_paths_at_point(estimator, p, n, stream_key(key, k), kPaths, rays[k], monitor);
+      found.E[k] = luminous_mean(E), found.variance[k] = luminous_mean(std_error) * luminous_mean(std_error);
     }
   });
-  Pilot all;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double error = luminous_mean(found[k].std_error);
-    all.E += luminous_mean(found[k].E), all.variance += error * error, all.rays += rays[k];
-  }
-  return all;
+  for (const auto r : rays) found.rays += r;
+  return found;
 }
+
+/// Sums over the points, each relative to its own light: dark rooms count as bright ones do.
+struct Compared {
+  double one = 0, two = 0;  ///< variance times rays
+  double missed = 0, variance = 0, points = 0;
+
+  Compared(const Pilot& a, const Pilot& b) {
+    for (std::size_t k = 0; k < a.E.size(); ++k) {
+      const double E = std::max(a.E[k], b.E[k]);
+      if (!(E > 0)) continue;
+      one += a.variance[k] / (E * E) * static_cast<double>(a.rays);
+      two += b.variance[k] / (E * E) * static_cast<double>(b.rays);
+      missed += (b.E[k] - a.E[k]) / E;
+      variance += (a.variance[k] + b.variance[k]) / (E * E);
+      ++points;
+    }
+  }
+};
 
 bool has_narrow_gloss(const Problem& problem) {
   if (problem.lights.luminaires.empty() && problem.lights.suns.empty()) return false;
@@ -58,10 +73,9 @@ ReferencePaths::ReferencePaths(const Illumination& light, std::size_t points, co
   const Pilot one = pilot(estimator_, points, point_of, stream_key(key, kErrorPilots, 0), monitor),
               two = pilot(both_->estimator(), points, point_of, stream_key(key, kErrorPilots, 1), monitor);
   if (monitor.should_stop()) return;
-  const auto cost = [](const Pilot& p) { return p.variance * static_cast<double>(p.rays); };
-  const double missed = two.E - one.E;
-  from_both_ends_ = cost(one) > kMuchBetter * cost(two) ||
-                    (missed > kMissed * two.E && missed > 3 * std::sqrt(one.variance + two.variance));
+  const Compared compared(one, two);
+  from_both_ends_ = compared.one > kMuchBetter * compared.two ||
+                    compared.missed > std::max(kMissed * compared.points, kSure * std::sqrt(compared.variance));
   if (from_both_ends_) estimator_ = both_->estimator();
 }
 

@@ -133,7 +133,7 @@ void follow(const Problem& problem, const Start& start, RandomStream random, dou
   }
 }
 
-std::vector<CausticSide> caustic_sides(const Problem& problem) {
+std::vector<CausticSide> caustic_sides(const Problem& problem, bool with_gloss) {
   const auto& [patches, rays, lights] = problem;
   std::vector<CausticSide> sides;
   if ((lights.luminaires.empty() && lights.suns.empty()) || (!rays.has_mirrors() && !rays.has_gloss())) return sides;
@@ -142,7 +142,7 @@ std::vector<CausticSide> caustic_sides(const Problem& problem) {
     const Material& material = patches.front_material(t);
     const bool is_mirror = material.turns_rays() && rays.plane_of(t) == kNoPlane;
     for (const Side side : {kFront, kBack}) {
-      if (!is_mirror && !rays.gloss().narrow_without_plane(t, side)) continue;
+      if (!is_mirror && !(with_gloss && rays.gloss().narrow_without_plane(t, side))) continue;
       CausticSide& to = sides.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) to.corners[k] = patches.vertices[patches.corners[t][k]];
       to.normal = side == kFront ? rays.normal(t) : -rays.normal(t);
@@ -179,9 +179,9 @@ std::vector<CausticLeg> trace_caustics(const Problem& problem, std::size_t parti
 }
 
 Caustics find_caustics(const Problem& problem, std::size_t particles, std::size_t legs_of_point, std::uint64_t seed,
-                       const Monitor& monitor) {
+                       const Monitor& monitor, bool with_gloss) {
   Caustics found;
-  found.sides = caustic_sides(problem);
+  found.sides = caustic_sides(problem, with_gloss);
   if (found.sides.empty()) return found;
   Lights lights = problem.lights;
   lights.caustics = found;

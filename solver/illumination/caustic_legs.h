@@ -14,9 +14,10 @@ namespace clerestory {
 /// (RayScene::plane_of), and of gloss that is narrow and in no plane that lights have images in: curved ones. Empty
 /// where there are none, or no luminaire or sun.
 ///
-/// problem  whose triangles are those of the rays.
+/// problem        whose triangles are those of the rays.
+/// with_gloss     false: for who finds light over gloss by himself.
 Caustics find_caustics(const Problem& problem, std::size_t particles, std::size_t legs_of_point, std::uint64_t seed,
-                       const Monitor& monitor = {});
+                       const Monitor& monitor = {}, bool with_gloss = true);
 
 /// Sends particles from the lights, images among them, to the sides of Lights::caustics, and follows each over all that
 /// turns it, by one way where there are several, until it ends on what scatters it alone or by roulette. Light that

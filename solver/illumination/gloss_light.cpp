@@ -154,7 +154,9 @@ class GlossLight::Look {
 };
 
 GlossLight::GlossLight(const Problem& problem)
-    : problem_(problem), leaves_narrow_(!problem.lights.caustics.sides.empty()) {
+    : problem_(problem), leaves_narrow_(std::ranges::any_of(problem.lights.caustics.sides, [](const CausticSide& side) {
+        return side.mirror.is_black();
+      })) {
   const Lights& lights = problem.lights;
   if (!problem.rays.has_gloss() || (lights.luminaires.empty() && lights.suns.empty())) return;
   lights_ = choice_of_lights(problem);

@@ -40,9 +40,9 @@ enum Stream : std::uint64_t {
   kEchoFactors = 0xd2,
   kParticles = 0x52,
   kPhotons = 0x53,
-  kCaustics = 0x54,
-  kErrorCaustics = 0x55,
-  kErrorPilots = 0x56,
+  kCaustics = 0x5a,
+  kErrorCaustics = 0x5b,
+  kErrorPilots = 0x5c,
   // Points, by number.
   kPathsOfSensor = 0x61,
   kPathsOfSample = 0x62,

@@ -206,11 +206,11 @@ PointIrradiance irradiance_at(const Problem& problem, const Solution& solution, 
                               const RowLight* layers = nullptr) {
   if (is_by_paths(options.method)) {
     const WithoutCaustics apart(problem);
-    const Illumination light(options.method == Method::path ? apart.problem() : problem);
+    const Illumination light(apart.problem());
     PointIrradiance at = with_paths(light, options.method, [&](const PathEstimator& estimator) {
       return trace_paths_at(estimator, count, point_of, paths, stream_key(options.seed, stream), stage, monitor);
     });
-    if (options.method == Method::path) add_caustics(problem, point_of, at);
+    if (!problem.lights.caustics.legs.empty()) add_caustics(problem, point_of, at);
     return at;
   }
   return gather_at(gather_illumination_by_slits(problem, solution.B, solution.slit_light, options.seed, monitor), count,
@@ -265,9 +265,9 @@ Solution solve_on_patches(const Problem& problem, const SolveOptions& options, c
     monitor.say_result();  // direct light, and an estimate of what follows from it
     if (is_by_paths(options.method)) {
       const WithoutCaustics apart(problem);
-      const bool adds_caustics = options.method == Method::path && !problem.lights.caustics.legs.empty();
+      const bool adds_caustics = !problem.lights.caustics.legs.empty();
       const Field caustics = adds_caustics ? caustics_on_patches(problem, problem.lights.caustics.legs) : Field{};
-      const Illumination of_paths(adds_caustics ? apart.problem() : problem);
+      const Illumination of_paths(apart.problem());
       return with_paths(of_paths, options.method, [&](const PathEstimator& estimator) {
         return path_trace(problem, estimator, kMethodNames[static_cast<std::size_t>(options.method)], direct,
                           of_patches, {e.paths, options.seed, adds_caustics ? &caustics : nullptr}, monitor);

@@ -8,8 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "solver/evaluate/points_by_room.h"
+#include "solver/evaluate/reference_paths.h"
 #include "solver/model/random_stream.h"
 #include "solver/paths/path_tracer.h"
+#include "tests/support/lit_patches.h"
+#include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
 #include "tests/support/unjoined_lightmap.h"
 
@@ -183,6 +186,27 @@ TEST(ErrorFigures, OfOnePointAreNeverNothing) {
   EXPECT_GT(summarise(gathered).upper(), 0.3 / 10);
   const std::vector<Comparison> traced{{.x = 10, .r = 10, .std_error = 0.3}};
   EXPECT_GT(summarise(traced).upper(), 0.3 / 10);
+}
+
+TEST(ReferencePaths, AreFromBothEndsWhereThoseFromPointsFindTheLightByChance) {
+  // A lamp without size, in a room; the same with a plate 2 cm below it, so that all light comes off the ceiling.
+  for (const bool has_plate : {false, true}) {
+    test::PatchBuilder b(0.6);
+    b.box({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2.5}, {4, 3, 3}, true);
+    if (has_plate)
+      b.rectangle({1.8, 1.3, 2.46}, {0.4, 0, 0}, {0, 0.4, 0}).rectangle({1.8, 1.3, 2.46}, {0, 0.4, 0}, {0.4, 0, 0});
+    Lights lights;
+    lights.luminaires = {test::point_lamp({2, 1.5, 2.48}, 100)};
+    const test::LitPatches room(b.build(), std::move(lights));
+    const Illumination light(room.problem);
+    const ReferencePaths paths(light, 64,
+                               [](std::size_t i) {
+                                 const auto u = sobol4(static_cast<std::uint32_t>(i), 5);
+                                 return ReceivingPoint{{0.1 + 3.8 * u[0], 0.1 + 2.8 * u[1], 1e-4}, {0, 0, 1}};
+                               },
+                               1, {});
+    EXPECT_EQ(paths.are_from_both_ends(), has_plate);
+  }
 }
 
 }  // namespace

@@ -283,7 +283,7 @@ TEST_P(CausticOfMethod, IsThatOfParticlesThatKnowNoOtherWay) {
   const Solution reference = solve_on_patches(problem, options);
   lights.caustics = find_caustics(problem, 1 << 18, 800, 1);
   options.method = GetParam(), options.accuracy = Accuracy::standard;
-  const bool by_elements = GetParam() == Method::hierarchical;
+  const bool by_elements = GetParam() == Method::hierarchical, by_paths = is_by_paths(GetParam());
   SolvedPatches solved;
   if (by_elements) {
     solved = solve(problem, test::unjoined_lightmap(patches), 1.0, options);
@@ -303,7 +303,7 @@ TEST_P(CausticOfMethod, IsThatOfParticlesThatKnowNoOtherWay) {
     }
     return sum;
   };
-  const double noise = GetParam() == Method::path ? 0.04 : 0.02;  // paths: 2 % from seed to seed on so few patches
+  const double noise = by_paths ? 0.04 : 0.02;  // paths: 2 % from seed to seed on so few patches
   for (const bool on_ceiling : {false, true}) {
     const double expected = flux(patches, reference.E, on_ceiling);
     EXPECT_NEAR(flux(elements, solved.solution.E, on_ceiling), expected, noise * expected) << on_ceiling;
@@ -316,7 +316,8 @@ TEST_P(CausticOfMethod, IsThatOfParticlesThatKnowNoOtherWay) {
   EXPECT_NEAR(energy.absorbed + energy.escaped, energy.emitted, noise * energy.emitted);
 }
 INSTANTIATE_TEST_SUITE_P(Methods, CausticOfMethod,
-                         testing::Values(Method::hierarchical, Method::progressive, Method::path),
+                         testing::Values(Method::hierarchical, Method::progressive, Method::path,
+                                         Method::bidirectional),
                          [](const auto& m) { return std::string(kMethodNames[static_cast<std::size_t>(m.param)]); });
 
 TEST(CausticLight, PlaneMirrorsHaveNone) {

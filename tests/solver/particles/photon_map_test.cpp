@@ -175,8 +175,8 @@ TEST(Photons, TellTheIrradianceAroundAPoint) {
     const Hit below = scene.rays.first_hit(scene.patches, {p + Vec3{0, 0, 0.005}, {0, 0, -1}});
     return irradiance(map, surface, p, below.patch, 1000, radius, room)[0];
   };
-  // E = 10 (1 + r^2)^(-3/2). A disc of 1000 landings has a radius of 0.06 m; weighted they are worth 750. At an edge and
-  // in a corner they lie farther away, and a slope counts.
+  // E = 10 (1 + r^2)^(-3/2). A disc of 1000 landings has a radius of 0.06 m; weighted they are worth 750. At an edge
+  // and in a corner they lie farther away, and a slope counts.
   for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{0.3, 0, 0}, Vec3{0.7, 0, 0}, Vec3{0.2, 0.999, 0}, Vec3{0.999, -0.999, 0}}) {
     const double E = 10 * std::pow(1 + p.x * p.x + p.y * p.y, -1.5);
     const bool at_edge = std::abs(p.y) > 0.9;

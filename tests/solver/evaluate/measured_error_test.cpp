@@ -189,14 +189,15 @@ TEST(ErrorFigures, OfOnePointAreNeverNothing) {
 }
 
 TEST(ReferencePaths, AreFromBothEndsWhereThoseFromPointsFindTheLightByChance) {
-  // A lamp without size, in a room; the same with a plate 2 cm below it, so that all light comes off the ceiling.
+  // A lamp without size in the middle of a room, and one near the ceiling with a plate 2 cm below it, so that all light
+  // comes off the ceiling.
   for (const bool has_plate : {false, true}) {
     test::PatchBuilder b(0.6);
     b.box({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2.5}, {4, 3, 3}, true);
     if (has_plate)
       b.rectangle({1.8, 1.3, 2.46}, {0.4, 0, 0}, {0, 0.4, 0}).rectangle({1.8, 1.3, 2.46}, {0, 0.4, 0}, {0.4, 0, 0});
     Lights lights;
-    lights.luminaires = {test::point_lamp({2, 1.5, 2.48}, 100)};
+    lights.luminaires = {test::point_lamp({2, 1.5, has_plate ? 2.48 : 1.5}, 100)};
     const test::LitPatches room(b.build(), std::move(lights));
     const Illumination light(room.problem);
     const ReferencePaths paths(light, 64,

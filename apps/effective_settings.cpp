@@ -47,6 +47,7 @@ std::vector<Figure> as_figures(const Settings& s, int channels, const ReadOption
   if (read.unit) out.push_back({"unit", *read.unit});
   if (read.up) out.push_back({"up", *read.up});
   if (read.sky) out.push_back({"sky", *read.sky});
+  if (read.gloss) out.push_back({"gloss", *read.gloss});
   return out;
 }
 

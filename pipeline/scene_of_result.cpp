@@ -47,8 +47,9 @@ std::vector<std::filesystem::path> files_of_scene(const WrittenResult& result, c
 
 Scene read_scene_of(const WrittenResult& result, const std::filesystem::path& file,
                     const std::filesystem::path& instead) {
-  const ReadOptions options{text_of(result, "settings.unit"), text_of(result, "settings.up"),
-                            text_of(result, "settings.sky")};
+  ReadOptions options;
+  options.unit = text_of(result, "settings.unit"), options.up = text_of(result, "settings.up");
+  options.sky = text_of(result, "settings.sky"), options.gloss = text_of(result, "settings.gloss");
   return read_scene(instead.empty() ? file_of_scene(result, file, "say where it is: --scene FILE") : instead, options);
 }
 

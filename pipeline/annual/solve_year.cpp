@@ -232,10 +232,9 @@ YearSolved solve_year(const Scene& scene, const DaylightYear& year, const YearSe
   std::optional<PreparedToSolve> prepared = prepare_to_solve(shown, solving, observer, monitor, seconds);
   warn_about_places(prepared->scene.problem(), shown, sensors, solving.solve.method, observer);
   if (has_curved_mirrors(prepared->scene))
-    observer.warn(
-        shown.file +
-        ": mirrors lie in more than 64 planes, as curved ones do: what the smaller of them send on of the sun "
-        "itself is left out of a year.");
+    observer.warn(shown.file +
+                  ": mirrors lie in more than 64 planes, as curved ones do: what those that have less than a 64th of "
+                  "their area send on of the sun itself is left out of a year.");
   if (prepared->scene.rays.has_gloss())
     observer.warn(shown.file +
                   ": what glossy surfaces send on of the sun itself is left out of a year where it falls "

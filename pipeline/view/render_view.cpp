@@ -5,6 +5,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <string_view>
 
 #include "io/picture/encode.h"
 #include "io/picture/iso_lines.h"
@@ -119,12 +120,15 @@ struct RaysAndRest {
   std::optional<ViewScene> around;  ///< of a final gather: all surfaces, with all light
 };
 
-/// As many as the default method has at `standard`; in a picture fewer tell each place.
-void add_caustics(RaysAndRest& rays, const Monitor& monitor) {
-  constexpr std::size_t kPhotonsOfPlace = 128;
-  const Effort standard = effort(Accuracy::standard);
-  rays.scene.lights.caustics = find_caustics(rays.scene.problem(), static_cast<std::size_t>(standard.caustic_particles),
-                                             kPhotonsOfPlace, 1, monitor);
+/// As the accuracy of the result has them.
+void add_caustics(const WrittenResult& result, RaysAndRest& rays, const Monitor& monitor) {
+  const auto named = result.texts.find("settings.accuracy");
+  const bool is_named = named != result.texts.end() && !named->second.empty();
+  const auto at = std::ranges::find(kAccuracyNames, is_named ? std::string_view(named->second.front()) : "standard");
+  const Effort e = effort(at == std::end(kAccuracyNames) ? Accuracy::standard
+                                                         : static_cast<Accuracy>(at - std::begin(kAccuracyNames)));
+  rays.scene.lights.caustics = find_caustics(rays.scene.problem(), static_cast<std::size_t>(e.caustic_particles),
+                                             static_cast<std::size_t>(e.caustic_legs), 1, monitor);
   if (!rays.scene.lights.caustics.legs.empty()) rays.points = make_lightmap(rays.scene.patches);
 }
 
@@ -139,7 +143,7 @@ std::unique_ptr<RaysAndRest> rays_and_rest(const WrittenResult& result, const st
   std::optional<Prepared> scene = lights_of_result(result, file, request.scene, monitor);
   if (!scene) return {};
   auto found = std::make_unique<RaysAndRest>(RaysAndRest{std::move(*scene), {}, {}, {}, {}});
-  add_caustics(*found, monitor);
+  add_caustics(result, *found, monitor);
   found->light.emplace(found->scene.problem(), &found->points);
   Field E;  // that is left to the result
   if (request.final_gather > 0) {

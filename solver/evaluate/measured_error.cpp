@@ -87,7 +87,8 @@ MeasuredError summarise_parts(const Compared& compared, std::vector<ErrorOfPart>
 }
 
 struct References {
-  std::vector<Comparison> at;  ///< those that were finished
+  std::vector<Comparison> at;       ///< those that were finished
+  std::vector<std::size_t> sample;  ///< their numbers among the samples
   unsigned long long rays = 0;
   bool complete = false;
 };
@@ -106,16 +107,19 @@ std::vector<double> other_caustics(const Problem& problem, std::size_t parts, co
 }
 
 /// Adds them to the references, each by particles of its own; to those of paths in replicates, which tell their noise.
+/// They have none without, so a deadline does not stop it: it makes them fewer.
 void add_caustics(const Problem& problem, const PointOf& point_of, std::uint64_t key, const Monitor& monitor,
                   std::vector<Comparison>& at) {
   if (problem.lights.caustics.legs.empty()) return;
-  constexpr std::size_t kParts = 2;
-  const auto found = [&](std::size_t parts, std::uint64_t set) {
-    return other_caustics(problem, parts, point_of, at.size(), stream_key(key, kErrorCaustics, set), monitor);
+  const std::size_t parts = monitor.has_deadline() ? 8 : 4;
+  Monitor patient;
+  patient.interrupted = monitor.interrupted;
+  const auto found = [&](std::size_t of, std::uint64_t set) {
+    return other_caustics(problem, of, point_of, at.size(), stream_key(key, kErrorCaustics, set), patient);
   };
   std::vector<PathSum> of_paths(at.size());
   for (std::size_t r = 0; r < kReplicates; ++r) {
-    const std::vector<double> E = found(kParts * kReplicates, 2 + r);
+    const std::vector<double> E = found(parts * kReplicates, 2 + r);
     for (std::size_t k = 0; k < at.size(); ++k) of_paths[k].add(Spectrum(E[k]));
   }
   for (std::size_t k = 0; k < at.size(); ++k) {
@@ -123,7 +127,7 @@ void add_caustics(const Problem& problem, const PointOf& point_of, std::uint64_t
     at[k].std_error = std::hypot(at[k].std_error, of_paths[k].std_error()[0]);
   }
   if (at.empty() || at.front().gather < 0) return;
-  const std::vector<double> one = found(kParts, 0), two = found(kParts, 1);
+  const std::vector<double> one = found(parts, 0), two = found(parts, 1);
   for (std::size_t k = 0; k < at.size(); ++k) at[k].gather += one[k], at[k].other_gather += two[k];
 }
 
@@ -156,14 +160,14 @@ Compared compare(const Problem& whole, const std::vector<Comparison>& samples, c
           }
           return rays;
         });
-    References references{{}, blocks.rays, blocks.done == mean.size()};
+    References references{{}, {}, blocks.rays, blocks.done == mean.size()};
     for (std::size_t k = 0; k < count; ++k) {
       const auto first = static_cast<std::ptrdiff_t>(k * kReplicates);
       if (std::count(finished.begin() + first, finished.begin() + first + std::ptrdiff_t{kReplicates}, 0) > 0) continue;
       const auto [E, std_error] =
           estimate_of(std::span<const Spectrum, kReplicates>(&mean[k * kReplicates], kReplicates));
-      const Comparison& sample = samples[sample_of(k)];
-      references.at.push_back(sample);
+      references.sample.push_back(sample_of(k));
+      references.at.push_back(samples[sample_of(k)]);
       references.at.back().r = luminous_mean(E);
       references.at.back().std_error = luminous_mean(std_error);
     }
@@ -172,7 +176,12 @@ Compared compare(const Problem& whole, const std::vector<Comparison>& samples, c
 
   const std::size_t step = samples.size() / kFewestPoints + 1, pilots = (samples.size() + step - 1) / step;
   const References pilot = trace(pilots, key + 1, kPilotPaths, [&](std::size_t k) { return k * step; });
-  if (!pilot.complete) return {pilot.at, reference};
+  const auto compared = [&](References references) -> Compared {
+    add_caustics(
+        whole, [&](std::size_t k) { return point_of(references.sample[k]); }, key, monitor, references.at);
+    return {std::move(references.at), reference};
+  };
+  if (!pilot.complete) return compared(pilot);
   const double rays_per_path = static_cast<double>(pilot.rays) / static_cast<double>(pilots * kPilotPaths);
   const double affordable =  // paths in all
       std::max(kShareOfRays * static_cast<double>(solution.rays), effort.rays) / rays_per_path;
@@ -183,7 +192,7 @@ Compared compare(const Problem& whole, const std::vector<Comparison>& samples, c
   const auto count = std::min(samples.size(), wanted);
   const auto number_of = [&](std::size_t k) { return k * samples.size() / count; };
   References all = trace(count, key, paths, number_of);
-  if (all.at.size() < pilot.at.size()) return {pilot.at, reference};
+  if (all.at.size() < pilot.at.size()) return compared(pilot);
   if (all.complete && solution.std_error.value.empty()) {
     const auto found = two_gathers(
         problem, solution, all.at.size(), [&](std::size_t k) { return point_of(number_of(k)); }, effort.gather, key,
@@ -191,9 +200,7 @@ Compared compare(const Problem& whole, const std::vector<Comparison>& samples, c
     if (!found.empty()) reference += ", with gathers";
     for (std::size_t k = 0; k < found.size(); ++k) all.at[k].gather = found[k][0], all.at[k].other_gather = found[k][1];
   }
-  add_caustics(
-      whole, [&](std::size_t k) { return point_of(number_of(k)); }, key, monitor, all.at);
-  return {std::move(all.at), std::move(reference)};
+  return compared(std::move(all));
 }
 
 /// Rooms with their area and what the result says of their light.

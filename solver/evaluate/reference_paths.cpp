@@ -74,6 +74,7 @@ ReferencePaths::ReferencePaths(const Illumination& light, std::size_t points, co
               two = pilot(both_->estimator(), points, point_of, stream_key(key, kErrorPilots, 1), monitor);
   if (monitor.should_stop()) return;
   const Compared compared(one, two);
+  if (compared.missed < -kSure * std::sqrt(compared.variance)) return;
   from_both_ends_ = compared.one > kMuchBetter * compared.two ||
                     compared.missed > std::max(kMissed * compared.points, kSure * std::sqrt(compared.variance));
   if (from_both_ends_) estimator_ = both_->estimator();

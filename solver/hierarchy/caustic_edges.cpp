@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "solver/illumination/caustic_legs.h"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr int kMostHalvings = 16;  // of an element in one call: eight of its edges
 constexpr double kSigmas = 3;
+
+Vec3 vec(const std::array<float, 3>& v) { return {double{v[0]}, double{v[1]}, double{v[2]}}; }
 
 /// Luminous flux on the four parts of a triangle [W].
 struct Parts {
@@ -41,19 +44,23 @@ std::size_t halve_at_caustics(ElementMesh& mesh, const Problem& before, std::spa
                               const Field& E, const RefineOptions& options, const Monitor& monitor) {
   const std::span<const CausticLeg> legs = before.lights.caustics.legs;
   if (legs.empty()) return 0;
+  std::vector<float> flux(legs.size());  // what glass leaves of it
+  for (std::size_t k = 0; k < legs.size(); ++k)
+    flux[k] = static_cast<float>(luminous_mean(landing_of(before, legs[k]).flux));
   std::vector<double> rest(E.size());  // light of an element that is no caustic
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = luminous_mean(E[i]);
-  each_landing(before, legs,
-               [&](const CausticLanding& l) { rest[l.patch] -= luminous_mean(l.flux) / before.patches.area[l.patch]; });
+  for (std::size_t k = 0; k < legs.size(); ++k)
+    if (const PatchId p = patch_of(before.patches, legs[k]); p.valid())
+      rest[p] -= double{flux[k]} / before.patches.area[p];
   std::size_t halved = 0;
   for (int pass = 0; pass < kMostHalvings && !monitor.should_stop(); ++pass) {
     const std::vector<std::uint32_t> leaves = mesh.leaves();
     const PatchSet patches = mesh.leaf_patches();
     std::vector<Parts> parts(leaves.size());
-    each_landing({patches, before.rays, before.lights}, legs, [&](const CausticLanding& l) {
-      parts[l.patch].add(mesh.corner_positions(leaves[l.patch]), l.place, luminous_mean(l.flux));
-    });
-    std::vector<std::uint32_t> marked;
+    for (std::size_t k = 0; k < legs.size(); ++k)
+      if (const PatchId p = patch_of(patches, legs[k]); p.valid())
+        parts[p].add(mesh.corner_positions(leaves[p]), vec(legs[k].to), double{flux[k]});
+    std::vector<std::pair<double, std::uint32_t>> worst;
     for (std::size_t j = 0, i = 0; j < numbers.size(); ++j)
       for (const std::size_t end = i + mesh.leaves_under(numbers[j]); i < end; ++i) {
         const std::uint32_t e = leaves[i];
@@ -61,9 +68,16 @@ std::size_t halve_at_caustics(ElementMesh& mesh, const Problem& before, std::spa
           continue;
         // Of four parts alike.
         const double all = parts[i].all() + std::max(0.0, rest[j]) * mesh[e].area;
-        if (parts[i].difference() > options.tolerance * all / 4) marked.push_back(e);
+        if (const double difference = parts[i].difference(); difference > options.tolerance * all / 4)
+          worst.emplace_back(-difference, e);
       }
-    if (marked.empty() || mesh.leaf_count() + 4 * marked.size() > options.most_elements) break;
+    // An element brings its neighbour with it, and a few more.
+    const std::size_t room = (options.most_elements - std::min(options.most_elements, mesh.leaf_count())) / 4;
+    std::ranges::sort(worst);
+    worst.resize(std::min(worst.size(), room));
+    if (worst.empty()) break;
+    std::vector<std::uint32_t> marked;
+    for (const auto& [difference, e] : worst) marked.push_back(e);
     halved += marked.size();
     mesh.split(marked);
   }

@@ -17,9 +17,10 @@ namespace clerestory {
 namespace {
 
 constexpr int kMostLegs = 256;
-constexpr double kMuch = 0.1;           // of a particle's first flux: below it roulette ends the way
-constexpr double kByAreaAlone = 0.1;    // share of the particles, so that no side is forgotten that is lit at its rim
-constexpr std::size_t kBlock = 1 << 9;  // particles of a task
+constexpr double kMuch = 0.1;         // of a particle's first flux: below it roulette ends the way
+constexpr double kByAreaAlone = 0.1;  // share of the particles, so that no side is forgotten that is lit at its rim
+constexpr std::size_t kBlock = 1 << 9, kRound = 64;  // particles of a task; tasks between looks at the monitor
+constexpr std::size_t kMostOfParticle = 3;  // legs in the mean: a light pipe has fewer particles rather than more
 
 std::array<float, 3> floats(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -36,33 +37,45 @@ double area_of(const CausticSide& side) {
 
 const Lobe* lobe_of(const RayScene& rays, const CausticSide& side) { return rays.lobe(side.triangle, -side.normal); }
 
-/// What the lights send on from each side where nothing blocks, about [W].
-std::vector<double> turned_by(const Problem& problem) {
+/// What the lights send on from each side where nothing blocks, about [W]; of many lights by some of them.
+void weigh(const Problem& problem, std::vector<CausticSide>& sides) {
+  constexpr std::uint32_t kMostLights = 64;
   const Lights& lights = problem.lights;
-  std::vector<double> turned(lights.caustics.sides.size());
-  parallel_for(turned.size(), 16, [&](std::size_t from, std::size_t to) {
+  const auto count = static_cast<std::uint32_t>(lights.luminaires.size() + lights.suns.size());
+  const LightChoice choice = choice_of_lights(problem);
+  const auto open = [&](std::uint32_t light, const Vec3& x, const Vec3& n) {
+    if (is_sun(lights, light)) {
+      const PlacedSun& sun = sun_of(lights, light);
+      return sun.share * luminous_mean(sun.normal_irradiance) * std::max(0.0, dot(n, sun.direction));
+    }
+    const PlacedLuminaire& luminaire = lights.luminaires[light];
+    return luminaire.share * luminous_mean(open_irradiance(luminaire, x, n));
+  };
+  parallel_for(sides.size(), 16, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
-      const CausticSide& side = lights.caustics.sides[k];
+      CausticSide& side = sides[k];
       const Vec3 middle = (side.corners[0] + side.corners[1] + side.corners[2]) / 3;
       double E = 0;
-      for (const PlacedLuminaire& luminaire : lights.luminaires)
-        E += luminaire.share * luminous_mean(open_irradiance(luminaire, middle, side.normal));
-      for (const PlacedSun& sun : lights.suns)
-        E += sun.share * luminous_mean(sun.normal_irradiance) * std::max(0.0, dot(side.normal, sun.direction));
+      for (std::uint32_t i = 0; i < std::min(count, kMostLights); ++i) {
+        if (count <= kMostLights) {
+          E += open(i, middle, side.normal);
+          continue;
+        }
+        const LightTree::Choice some = choice.choose(middle, side.normal, (i + 0.5) / kMostLights);
+        if (some.probability > 0) E += open(some.light, middle, side.normal) / (some.probability * kMostLights);
+      }
       const Lobe* lobe = lobe_of(problem.rays, side);
-      turned[k] = E * area_of(side) * luminous_mean(lobe ? lobe->specular() : side.mirror);
+      side.weight = E * area_of(side) * luminous_mean(lobe ? lobe->specular() : side.mirror);
     }
   });
-  return turned;
+  double all = 0, area = 0;
+  for (const CausticSide& side : sides) all += side.weight, area += area_of(side);
+  for (CausticSide& side : sides) side.weight += kByAreaAlone * all * area_of(side) / area;
 }
 
-CumulativeTable choice_of_sides(const Problem& problem) {
-  std::vector<double> weight = turned_by(problem);
-  double all = 0, area = 0;
-  for (std::size_t k = 0; k < weight.size(); ++k) all += weight[k], area += area_of(problem.lights.caustics.sides[k]);
-  if (!(all > 0)) return {};
-  for (std::size_t k = 0; k < weight.size(); ++k)
-    weight[k] += kByAreaAlone * all * area_of(problem.lights.caustics.sides[k]) / area;
+CumulativeTable choice_of_sides(const std::vector<CausticSide>& sides) {
+  std::vector<double> weight;
+  for (const CausticSide& side : sides) weight.push_back(side.weight);
   return CumulativeTable(weight);
 }
 
@@ -76,7 +89,7 @@ struct Start {
 class Source {
  public:
   explicit Source(const Problem& problem)
-      : problem_(problem), sides_(choice_of_sides(problem)), lights_(choice_of_lights(problem)) {}
+      : problem_(problem), sides_(choice_of_sides(problem.lights.caustics.sides)), lights_(choice_of_lights(problem)) {}
 
   bool empty() const { return sides_.empty(); }
 
@@ -108,8 +121,8 @@ class Source {
   LightChoice lights_;
 };
 
-void follow(const Problem& problem, const Start& start, RandomStream random, double per_particle,
-            std::vector<CausticLeg>& legs) {
+/// legs: of a whole particle's flux.
+void follow(const Problem& problem, const Start& start, RandomStream random, std::vector<CausticLeg>& legs) {
   const RayScene& rays = problem.rays;
   Ray ray = start.ray;
   Spectrum flux = start.flux;
@@ -118,7 +131,7 @@ void follow(const Problem& problem, const Start& start, RandomStream random, dou
     Echo echo;
     const Hit hit = rays.first_leg(problem.patches, ray, echo);
     const Vec3 end = hit.escaped() ? ray.origin + ray.direction * (2 * rays.diameter()) : hit.position(ray);
-    CausticLeg to{floats(ray.origin), floats(end), floats(flux * per_particle), start.light, hit.triangle, false, {}};
+    CausticLeg to{floats(ray.origin), floats(end), floats(flux), start.light, hit.triangle, false, {}};
     if (!hit.escaped()) {
       to.on_front = dot(rays.normal(hit.triangle), ray.direction) < 0;
       const auto [u, v] = rays.barycentric(hit.triangle, end);
@@ -158,23 +171,26 @@ std::vector<CausticSide> caustic_sides(const Problem& problem, bool with_gloss) 
 std::vector<CausticLeg> trace_caustics(const Problem& problem, std::size_t particles, std::uint64_t key,
                                        const Monitor& monitor) {
   const Source source(problem);
-  if (source.empty() || particles == 0) return {};
-  const std::size_t blocks = (particles + kBlock - 1) / kBlock;
-  std::vector<std::vector<CausticLeg>> of_block(blocks);
-  parallel_for(blocks, 1, [&](std::size_t from, std::size_t to) {
-    for (std::size_t b = from; b < to && !monitor.should_stop(); ++b)
-      for (std::size_t i = b * kBlock; i < std::min((b + 1) * kBlock, particles); ++i) {
-        const auto k = static_cast<std::uint32_t>(i);
-        follow(problem, source.send(sobol4(k, key), sobol4(k, key + 1)), RandomStream(key, i),
-               1 / static_cast<double>(particles), of_block[b]);
-      }
-  });
-  if (monitor.should_stop()) return {};
   std::vector<CausticLeg> legs;
-  std::size_t count = 0;
-  for (const auto& block : of_block) count += block.size();
-  legs.reserve(count);
-  for (const auto& block : of_block) legs.insert(legs.end(), block.begin(), block.end());
+  if (source.empty()) return legs;
+  std::size_t sent = 0;
+  // The first round gets its time: without it there would be nothing to show.
+  while (sent < particles && (sent == 0 || !monitor.should_stop()) && legs.size() < kMostOfParticle * particles) {
+    const std::size_t count = std::min(particles - sent, kBlock * kRound), blocks = (count + kBlock - 1) / kBlock;
+    std::vector<std::vector<CausticLeg>> of_block(blocks);
+    parallel_for(blocks, 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t b = from; b < to; ++b)
+        for (std::size_t i = sent + b * kBlock; i < sent + std::min((b + 1) * kBlock, count); ++i) {
+          const auto k = static_cast<std::uint32_t>(i);
+          follow(problem, source.send(sobol4(k, key), sobol4(k, key + 1)), RandomStream(key, i), of_block[b]);
+        }
+    });
+    for (const auto& block : of_block) legs.insert(legs.end(), block.begin(), block.end());
+    sent += count;
+  }
+  const auto share = static_cast<float>(1 / static_cast<double>(std::max<std::size_t>(sent, 1)));
+  for (CausticLeg& leg : legs)
+    for (float& flux : leg.flux) flux *= share;
   return legs;
 }
 
@@ -183,6 +199,7 @@ Caustics find_caustics(const Problem& problem, std::size_t particles, std::size_
   Caustics found;
   found.sides = caustic_sides(problem, with_gloss);
   if (found.sides.empty()) return found;
+  weigh(problem, found.sides);
   Lights lights = problem.lights;
   lights.caustics = found;
   found.legs = trace_caustics({problem.patches, problem.rays, lights}, particles, stream_key(seed, kCaustics), monitor);
@@ -190,10 +207,13 @@ Caustics find_caustics(const Problem& problem, std::size_t particles, std::size_
   return found;
 }
 
-CausticLanding landing_of(const Problem& problem, const CausticLeg& leg) {
+PatchId patch_of(const PatchSet& patches, const CausticLeg& leg) {
   if (!leg.triangle.valid()) return {};
-  const PatchId patch =
-      problem.patches.patch_at(leg.triangle, leg.on_front ? kFront : kBack, double{leg.uv[0]}, double{leg.uv[1]});
+  return patches.patch_at(leg.triangle, leg.on_front ? kFront : kBack, double{leg.uv[0]}, double{leg.uv[1]});
+}
+
+CausticLanding landing_of(const Problem& problem, const CausticLeg& leg) {
+  const PatchId patch = patch_of(problem.patches, leg);
   if (!patch.valid()) return {};
   const Vec3 from = vec(leg.from), to = vec(leg.to);
   const Spectrum flux(double{leg.flux[0]}, double{leg.flux[1]}, double{leg.flux[2]});

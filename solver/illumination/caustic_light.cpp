@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "solver/model/parallel.h"
+#include "solver/model/random_stream.h"
 #include "solver/model/units.h"
 #include "solver/sampling/plane_kernel.h"
 #include "solver/visibility/discs.h"
@@ -17,13 +18,15 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr KernelShape kShape = KernelShape::epanechnikov;
-constexpr double kLargest = 1.0 / 40;    // h over the scene's diameter
-constexpr std::size_t kPilot = 1 << 14;  // legs that tell how dense they are
-constexpr int kRadii = 12;               // steps of sqrt(1/2) in h that a pilot tells apart
-constexpr unsigned kFewest = 16;         // legs of the pilot that tell a density
-constexpr std::size_t kDirections = 32;  // that a point looks along its plane
-constexpr std::size_t kBlock = 1 << 12;  // legs of a task
-constexpr std::size_t kRound = 64;       // tasks before what they found is summed
+constexpr double kLargest = 1.0 / 40;     // h over the scene's diameter
+constexpr std::size_t kPilot = 1 << 14;   // legs that tell how dense they are
+constexpr int kRadii = 12;                // steps of sqrt(1/2) in h that a pilot tells apart
+constexpr unsigned kFewest = 16;          // legs of the pilot that tell a density
+constexpr std::size_t kDirections = 32;   // that a point looks along its plane
+constexpr std::size_t kBlock = 1 << 12;   // legs of a task
+constexpr double kBeyond = 2e-6;          // of the diameter: legs pass the discs of the surface that they end on
+constexpr std::size_t kAtOnce = 1 << 21;  // of what they find, about: 64 MB
+constexpr std::size_t kRound = 64;        // tasks before what they found is summed
 
 Vec3 vec(const std::array<float, 3>& v) { return {double{v[0]}, double{v[1]}, double{v[2]}}; }
 
@@ -81,8 +84,9 @@ struct Kernel {
 /// Calls passed(disc, leg, place) where a leg passes a disc from the front.
 template <class Passed>
 void pass(const Discs& discs, std::span<const ReceivingPoint> points, std::span<const std::uint32_t> numbers,
-          std::span<const CausticLeg> legs, std::size_t leg, const Passed& passed) {
-  const Vec3 from = vec(legs[leg].from), to = vec(legs[leg].to), way = to - from;
+          const CausticLeg& leg, double beyond, const Passed& passed) {
+  const Vec3 from = vec(leg.from), d = vec(leg.to) - from, way = d * (1 + beyond / std::max(beyond, length(d)));
+  const Vec3 to = from + way;
   discs.along(from, to, [&](std::uint32_t disc, double share) {
     const std::uint32_t p = numbers[disc];
     if (dot(points[p].n, way) < 0) passed(p, from + way * share);
@@ -98,7 +102,8 @@ Discs discs_of(std::span<const ReceivingPoint> points, std::span<const std::uint
 
 /// h of each point; 0 where no leg passes.
 std::vector<double> radii(std::span<const ReceivingPoint> points, std::span<const CausticLeg> legs,
-                          std::size_t legs_of_point, double largest) {
+                          std::size_t legs_of_point, double diameter) {
+  const double largest = kLargest * diameter, beyond = kBeyond * diameter;
   std::vector<double> radius(points.size(), largest);
   std::vector<std::uint32_t> all(points.size());
   for (std::uint32_t p = 0; p < points.size(); ++p) all[p] = p;
@@ -109,12 +114,13 @@ std::vector<double> radii(std::span<const ReceivingPoint> points, std::span<cons
     const Discs discs = discs_of(points, all, radius);
     parallel_for(pilots, 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k)
-        pass(discs, points, all, legs, k * step, [&](std::uint32_t p, const Vec3& x) {
-          const double r = length(x - points[p].p) / largest;
-          const int smallest = r > 0 ? static_cast<int>(-2 * std::log2(r)) : kRadii - 1;
-          passed[p][static_cast<std::size_t>(std::clamp(smallest, 0, kRadii - 1))].fetch_add(1,
-                                                                                             std::memory_order_relaxed);
-        });
+        pass(discs, points, all, legs[(k * step + mix_bits(k) % step) % legs.size()], beyond,
+             [&](std::uint32_t p, const Vec3& x) {
+               const double r = length(x - points[p].p) / largest;
+               const int smallest = r > 0 ? static_cast<int>(-2 * std::log2(r)) : kRadii - 1;
+               passed[p][static_cast<std::size_t>(std::clamp(smallest, 0, kRadii - 1))].fetch_add(
+                   1, std::memory_order_relaxed);
+             });
     });
   }
   std::vector<std::uint32_t> unknown;
@@ -135,12 +141,24 @@ std::vector<double> radii(std::span<const ReceivingPoint> points, std::span<cons
   const Discs discs = discs_of(points, unknown, radius);
   parallel_for(unknown.empty() ? 0 : legs.size(), 256, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k)
-      pass(discs, points, unknown, legs, k,
+      pass(discs, points, unknown, legs[k], beyond,
            [&](std::uint32_t p, const Vec3&) { any[p].store(true, std::memory_order_relaxed); });
   });
   for (const std::uint32_t p : unknown)
     if (!any[p].load(std::memory_order_relaxed)) radius[p] = 0;
   return radius;
+}
+
+/// Makes what lights give sum to E, none of it below 0.
+void fit(LightRow& row, const Spectrum& E) {
+  Spectrum sum(0.0), share;
+  for (RowEntry& entry : row)
+    for (std::size_t c = 0; c < entry.weight.size(); ++c) {
+      entry.weight[c] = std::max(0.0f, entry.weight[c]);
+      sum.c[c] += double{entry.weight[c]};
+    }
+  for (int c = 0; c < kMaxChannels; ++c) share[c] = sum[c] > 0 ? E[c] / sum[c] : 0;
+  for (RowEntry& entry : row) entry.scale(share);
 }
 
 }  // namespace
@@ -153,7 +171,7 @@ CausticIrradiance caustic_irradiance(const Problem& problem, std::span<const Cau
   if (legs.empty() || count == 0) return found;
   std::vector<ReceivingPoint> points(count);
   for (std::size_t i = 0; i < count; ++i) points[i] = point_of(i);
-  const std::vector<double> radius = radii(points, legs, legs_of_point, kLargest * problem.rays.diameter());
+  const std::vector<double> radius = radii(points, legs, legs_of_point, problem.rays.diameter());
   std::vector<std::uint32_t> lit;
   std::vector<std::uint32_t> number_of(count);
   for (std::uint32_t p = 0; p < count; ++p)
@@ -170,29 +188,45 @@ CausticIrradiance caustic_irradiance(const Problem& problem, std::span<const Cau
     Spectrum E;
   };
   const bool has_glass = problem.rays.has_glass();
+  std::vector<std::atomic<char>> glass(has_glass ? legs.size() : 0);  // of a leg: 0 not known, 1 none, 2 some
+  const auto leg_meets_glass = [&](std::size_t k) {
+    if (glass[k].load(std::memory_order_relaxed) == 0) {
+      const Spectrum passes = problem.rays.glass_transmittance(vec(legs[k].from), vec(legs[k].to));
+      glass[k].store(passes[0] == 1 && passes[1] == 1 && passes[2] == 1 ? 1 : 2, std::memory_order_relaxed);
+    }
+    return glass[k].load(std::memory_order_relaxed) == 2;
+  };
   const std::size_t blocks = (legs.size() + kBlock - 1) / kBlock;
-  for (std::size_t begin = 0; begin < blocks; begin += kRound) {
-    std::vector<std::vector<Passing>> of_block(std::min(kRound, blocks - begin));
+  std::size_t round = 2, begin = 0;
+  while (begin < blocks) {
+    std::vector<std::vector<Passing>> of_block(std::min(round, blocks - begin));
     parallel_for(of_block.size(), 1, [&](std::size_t from, std::size_t to) {
       for (std::size_t b = from; b < to; ++b)
         for (std::size_t k = (begin + b) * kBlock; k < std::min((begin + b + 1) * kBlock, legs.size()); ++k)
-          pass(discs, points, lit, legs, k, [&](std::uint32_t p, const Vec3& x) {
+          pass(discs, points, lit, legs[k], kBeyond * problem.rays.diameter(), [&](std::uint32_t p, const Vec3& x) {
             const double w = (*kernels[number_of[p]])(x);
             if (w == 0) return;
             Spectrum E = Spectrum(double{legs[k].flux[0]}, double{legs[k].flux[1]}, double{legs[k].flux[2]}) * w;
-            if (has_glass) E *= problem.rays.glass_transmittance(vec(legs[k].from), x);
+            if (has_glass && leg_meets_glass(k)) E *= problem.rays.glass_transmittance(vec(legs[k].from), x);
             of_block[b].push_back({p, static_cast<std::uint32_t>(k), E});
           });
     });
-    for (const auto& block : of_block)
+    std::size_t passings = 0;
+    for (const auto& block : of_block) {
+      passings += block.size();
       for (const auto& [p, leg, E] : block) {
         found.E.add(p, E);
         found.variance[p] += luminous_mean(E) * luminous_mean(E);
         if (with_rows) add_to_row(found.rows[p], legs[leg].light, E);
       }
+    }
+    begin += of_block.size();
+    round = std::clamp<std::size_t>(kAtOnce * of_block.size() / (passings + 1), 1, kRound);
   }
   // At edges a kernel takes off a little of what is far off.
   for (double& E : found.E.value) E = std::max(0.0, E);
+  if (with_rows)
+    for (std::size_t p = 0; p < count; ++p) fit(found.rows[p], found.E[p]);
   return found;
 }
 

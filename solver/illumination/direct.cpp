@@ -1,7 +1,9 @@
 #include "solver/illumination/direct.h"
 
 #include <algorithm>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "solver/illumination/caustic_legs.h"
 #include "solver/illumination/delta_light.h"
@@ -100,12 +102,14 @@ void balance_luminaires(const Problem& problem, std::span<const Beam> beams, Dir
 
 /// Caustics that land on patches: of luminaires and suns like all direct light.
 void add_caustics(const Problem& problem, std::vector<LightRow>& row_of_patch, DirectLight& direct) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Spectrum> of_light;  // rows are floats
   each_landing(problem, problem.lights.caustics.legs, [&](const CausticLanding& landing) {
     const Spectrum E = landing.flux / problem.patches.area[landing.patch];
     direct.E.add(landing.patch, E);
     if (is_sun(problem.lights, landing.light)) direct.energy.emitted += luminous_mean(landing.flux);
-    if (!row_of_patch.empty()) add_to_row(row_of_patch[landing.patch], landing.light, E);
+    if (!row_of_patch.empty()) of_light.try_emplace({landing.patch.value, landing.light}, 0.0).first->second += E;
   });
+  for (const auto& [where, E] : of_light) add_to_row(row_of_patch[where.first], where.second, E);
 }
 
 /// Rows of all patches in one, and what suns bring in.

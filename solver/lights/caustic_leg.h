@@ -21,6 +21,7 @@ struct CausticSide {
   Vec3 normal;                  ///< unit, on that side
   TriangleId triangle;          ///< of the rays
   Spectrum mirror{0.0};         ///< reflectance; black: it is glossy
+  double weight = 0;            ///< of its choice: about what it sends on [W]
 };
 
 /// A particle of it from one surface to the next.
@@ -52,7 +53,7 @@ class CausticLegs {
 struct Caustics {
   std::vector<CausticSide> sides;
   CausticLegs legs;
-  std::size_t particles = 0;  ///< that were sent; each has no leg, or some
+  std::size_t particles = 0;  ///< to be sent; each has no leg, or some
   /// About so many legs tell the irradiance at a point: more are less noise, and more blur.
   std::size_t legs_of_point = 0;
 };

@@ -43,6 +43,8 @@ Lights lights_at(const Lights& mean, std::size_t t) {
 std::vector<Layer> layers_of_times(const Lights& mean, const PatchSet& patches) {
   const std::size_t luminaires = mean.luminaires.size();
   const double share = 1 / static_cast<double>(mean.times);
+  Lights of_sky = mean;
+  of_sky.caustics = {};
   std::vector<Layer> layers(mean.times);
   for (std::size_t t = 0; t < mean.times; ++t) {
     Layer& layer = layers[t];
@@ -53,7 +55,7 @@ std::vector<Layer> layers_of_times(const Lights& mean, const PatchSet& patches) 
       if (!own || *own == t) layer.lights[luminaires + k] = Spectrum(own ? 1 : share);
     }
     layer.materials.assign(patches.materials.size(), Spectrum(share));
-    if (mean.sky) layer.sky = std::make_shared<const SkyRadiance>(lights_at(mean, t), share);
+    if (mean.sky) layer.sky = std::make_shared<const SkyRadiance>(lights_at(of_sky, t), share);
   }
   return layers;
 }

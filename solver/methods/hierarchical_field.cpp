@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "solver/illumination/caustic_legs.h"
 #include "solver/illumination/direct.h"
 #include "solver/illumination/near_luminaires.h"
 #include "solver/methods/near_points.h"
@@ -99,6 +100,9 @@ Field light_near_luminaires(const Problem& on_leaves, const std::vector<std::uin
       delta_light_on(on_leaves, near_leaves, {.shadow_rays = 64, .edge_rays = 256, .sky_rays = 0, .seed = seed});
   Field all(on_leaves.patches.patch_count(), on_leaves.patches.channels);
   for (std::size_t k = 0; k < near_leaves.size(); ++k) all.set(near_leaves[k], found[k]);
+  if (near_leaves.empty() || on_leaves.lights.caustics.legs.empty()) return all;
+  const Field caustics = caustics_on_patches(on_leaves, on_leaves.lights.caustics.legs);
+  for (const std::uint32_t leaf : near_leaves) all.add(leaf, caustics[leaf]);
   return all;
 }
 

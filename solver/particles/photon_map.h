@@ -77,23 +77,23 @@ struct PhotonsAround {
   std::vector<PhotonMap::Neighbour> found;
   std::vector<SurfaceKernel::Part> parts;
 };
-/// Calls take(landing, weight [1/m2]) for the `count` landings nearest within `radius` of point p of a patch, on
-/// patches that face as it does: by the kernel 1 - (r / R)^2 over the smooth surface around p, R the distance of the
-/// farthest, the sum of flux times weight is the irradiance there.
+/// Calls take(landing, weight [1/m2]) for those on the smooth surface around p among the `count` landings that are
+/// nearest within `radius` of point p of a patch and face as it does: by the kernel 1 - (r / R)^2 over that surface, R
+/// the distance of the farthest, the sum of flux times weight is the irradiance there.
 template <class Take>
 void photons_around(const PhotonMap& map, const SmoothSurface& surface, const Vec3& p, PatchId patch, std::size_t count,
                     double radius, PhotonsAround& room, const Take& take) {
-  constexpr double kAlike = 0.9;  // cosine: of a curved surface its neighbours count
   const PatchSet& patches = surface.patches();
   const double within = map.nearest(p, radius, count, room.found, [&](const Landing& photon) {
-    return dot(patches.normal[photon.patch], patches.normal[patch]) > kAlike;
+    return dot(patches.normal[photon.patch], patches.normal[patch]) > SmoothSurface::kAlike;
   });
   if (room.found.empty()) return;
   const SurfaceKernel kernel =
       surface.kernel(p, {&patch.value, 1}, std::sqrt(within), KernelShape::epanechnikov, room.parts);
   for (const PhotonMap::Neighbour& at : room.found) {
     const Landing photon = map[at.photon];
-    take(photon, kernel.weight(photon.position, 0));
+    const auto part = std::ranges::find(room.parts, photon.patch, &SurfaceKernel::Part::patch);
+    if (part != room.parts.end()) take(photon, kernel.weight(photon.position, double{part->height2}));
   }
 }
 /// That sum [W/m2].

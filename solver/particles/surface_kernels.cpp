@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "solver/geometry/triangle.h"
 #include "solver/model/parallel.h"
@@ -11,8 +11,20 @@
 namespace clerestory {
 namespace {
 
-/// Patches turned farther than this from those at the point are another surface: cosine.
-constexpr double kAlike = 0.5;
+/// Numbers that were met, forgotten in no time.
+class Met {
+ public:
+  void forget(std::size_t count) {
+    if (stamp_.size() < count) stamp_.resize(count, 0);
+    if (++now_ == 0) std::ranges::fill(stamp_, 0), now_ = 1;
+  }
+  /// Whether it is new.
+  bool meet(std::uint32_t number) { return std::exchange(stamp_[number], now_) != now_; }
+
+ private:
+  std::vector<std::uint32_t> stamp_;
+  std::uint32_t now_ = 0;
+};
 
 }  // namespace
 
@@ -45,7 +57,10 @@ SurfaceKernel SmoothSurface::kernel(const Vec3& at, std::span<const std::uint32_
   for (const std::uint32_t i : own) normal += patches_.normal[i] * patches_.area[i];
   const Frame frame(normalized(normal));
   thread_local std::vector<std::uint32_t> reached;
+  thread_local Met met;
   reached.assign(own.begin(), own.end());
+  met.forget(patches_.patch_count());
+  for (const std::uint32_t i : own) met.meet(i);
   KernelMoments m;
   for (std::size_t k = 0; k < reached.size(); ++k) {
     const std::uint32_t i = reached[k];
@@ -69,7 +84,7 @@ SurfaceKernel SmoothSurface::kernel(const Vec3& at, std::span<const std::uint32_
     for (std::size_t c = 0; c < 3; ++c) add_edge(shape, x[c], y[c], x[(c + 1) % 3], y[(c + 1) % 3], m);
     for (const std::uint32_t corner : map_.corners[i])
       for (const std::uint32_t next : patches_at(corner))
-        if (std::ranges::find(reached, next) == reached.end()) reached.push_back(next);
+        if (met.meet(next)) reached.push_back(next);
   }
   if (!(m.one > 0)) {
     parts.clear();

@@ -42,6 +42,9 @@ struct SurfaceKernel {
 /// Patches of a mesh, and how they go on from each other as one smooth surface.
 class SmoothSurface {
  public:
+  /// Patches turned farther than this from those at a place are another surface: cosine.
+  static constexpr double kAlike = 0.5;
+
   /// Both outlive this.
   SmoothSurface(const PatchSet& patches, const VertexLightmap& map);
 

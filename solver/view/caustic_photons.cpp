@@ -10,6 +10,7 @@ namespace clerestory {
 namespace {
 
 constexpr double kLargest = 1.0 / 40;  // radius over the scene's diameter
+constexpr std::size_t kPhotons = 128;  // that tell a place
 constexpr double kReach = 1e-5;        // of the diameter: results are written as float
 
 std::vector<Landing> photons_of(const Problem& problem) {
@@ -31,7 +32,6 @@ CausticPhotons::CausticPhotons(const Problem& problem, const VertexLightmap& poi
     : problem_(problem),
       map_(photons_of(problem)),
       surface_(problem.patches, points),
-      count_(problem.lights.caustics.legs_of_point),
       radius_(kLargest * problem.rays.diameter()) {}
 
 Spectrum CausticPhotons::sent_on(const Vec3& p, const Vec3& n, const Vec3& to_eye, const Spectrum& diffuse,
@@ -41,7 +41,7 @@ Spectrum CausticPhotons::sent_on(const Vec3& p, const Vec3& n, const Vec3& to_ey
   if (below.reflected || !below.patch.valid() || below.distance > 2 * reach) return Spectrum(0.0);
   thread_local PhotonsAround room;
   Spectrum sent(0.0);
-  photons_around(map_, surface_, p, below.patch, count_, radius_, room, [&](const Landing& photon, double weight) {
+  photons_around(map_, surface_, p, below.patch, kPhotons, radius_, room, [&](const Landing& photon, double weight) {
     const auto& [r, g, b] = photon.flux;
     Spectrum share = diffuse;
     if (lobe) share += lobe->evaluate(n, photon.direction(), to_eye);

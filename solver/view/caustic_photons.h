@@ -1,8 +1,6 @@
 #pragma once
 // Caustics at the very place that is seen: a photon map of what lands there.
 
-#include <cstddef>
-
 #include "solver/illumination/problem.h"
 #include "solver/particles/photon_map.h"
 
@@ -22,7 +20,6 @@ class CausticPhotons {
   const Problem& problem_;
   PhotonMap map_;
   SmoothSurface surface_;
-  std::size_t count_;
   double radius_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "solver/illumination/caustic_light.h"
 #include "solver/illumination/image_beams.h"
 #include "solver/illumination/one_light.h"
 #include "solver/lights/luminaire.h"
@@ -119,6 +120,16 @@ Spectrum FineLight::caustics(const SeenPlace& at) const {
   return caustics_->sent_on(at.p - problem_.patches.origin, at.facet, at.to_eye, at.diffuse, at.lobe);
 }
 
+Field FineLight::caustics_at(std::span<const SensorPoint> points) const {
+  if (!caustics_) return {};
+  return caustic_irradiance(problem_, points.size(),
+                            [&](std::size_t i) {
+                              const auto& [place, n] = points[i];
+                              return ReceivingPoint{problem_.rays.off_surface(place - problem_.patches.origin, n), n};
+                            })
+      .E;
+}
+
 Spectrum FineLight::by_gloss(const Vec3& p, const Vec3& n, int pairs, std::uint64_t key) const {
   return gloss_.irradiance(problem_.rays.off_surface(p - problem_.patches.origin, n), n, pairs, key).sum();
 }
@@ -127,7 +138,6 @@ StraightLight FineLight::at_point(const Vec3& place, const Vec3& n) const {
   const RayScene& rays = problem_.rays;
   const Vec3 p = rays.off_surface(place - problem_.patches.origin, n);
   StraightLight found;
-  found.E = found.low = found.high = caustics({.p = place, .facet = n, .n = n, .to_eye = n});
   SeenPlace at;
   at.n = n;
   const auto look = [&](std::uint32_t light, int count, const auto& point) {

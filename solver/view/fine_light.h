@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "solver/illumination/gloss_light.h"
 #include "solver/illumination/problem.h"
 #include "solver/lights/light_choice.h"
+#include "solver/model/sensors.h"
 #include "solver/view/caustic_photons.h"
 
 namespace clerestory {
@@ -51,6 +53,9 @@ class FineLight {
   Spectrum sent_on(const SeenPlace& at, const Draw& draw) const;
   /// The same of caustics, by the photons around it: smooth within a pixel.
   Spectrum caustics(const SeenPlace& at) const;
+
+  /// Irradiance by caustics at points (scene's frame), as a result has it: P x channels [W/m2]; empty without any.
+  Field caustics_at(std::span<const SensorPoint> points) const;
 
   /// Irradiance of a plane of unit normal n at p (scene's frame), by up to 16 shadow rays to each light.
   StraightLight at_point(const Vec3& p, const Vec3& n) const;

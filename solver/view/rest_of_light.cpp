@@ -120,6 +120,27 @@ StraightLight at_facets(const WrittenResult& result, const FineLight& light, std
   return all;
 }
 
+double way_to_facet(bool is_outline) {
+  return is_outline ? VertexLightmap::kWayFromOutline : VertexLightmap::kWayToCentroid;
+}
+
+/// Of E at each point what its facets have of caustics, as the result had them: as wide a line, in the same place.
+void take_off_caustics(const WrittenResult& result, const FineLight& light, const TrianglesOfPoints& at,
+                       const std::vector<bool>& is_outline, Field& E) {
+  std::vector<SensorPoint> places;
+  std::vector<std::size_t> begin{0};
+  for (std::size_t p = 0; p < E.size(); ++p) {
+    for (const FacetsAlike& facing : facings_of(result, at.of(p)))
+      places.push_back({on_facet(result, p, facing.facets.front(), way_to_facet(is_outline[p])), facing.normal});
+    begin.push_back(places.size());
+  }
+  const Field caustics = light.caustics_at(places);
+  if (caustics.value.empty()) return;
+  for (std::size_t p = 0; p < E.size(); ++p)
+    for (std::size_t i = begin[p]; i < begin[p + 1]; ++i)
+      E.add(p, caustics[i] * (-1 / static_cast<double>(begin[p + 1] - begin[p])));
+}
+
 }  // namespace
 
 Field rest_of_light(const WrittenResult& result, const FineLight& light, const Monitor& monitor) {
@@ -131,15 +152,15 @@ Field rest_of_light(const WrittenResult& result, const FineLight& light, const M
   const TrianglesOfPoints at = triangles_of_points(result);
   const std::vector<bool> is_outline = outline_points(result, at);
   std::vector<StraightLight> straight(count);
-  const Blocks blocks = parallel_blocks(
-      count, std::max<std::size_t>(count / 16, 1024), 64, "direct light", monitor,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-          straight[p] = at_facets(result, light, p, at.of(p),
-                                  is_outline[p] ? VertexLightmap::kWayFromOutline : VertexLightmap::kWayToCentroid);
-        return 0ull;
-      });
+  const Blocks blocks = parallel_blocks(count, std::max<std::size_t>(count / 16, 1024), 64, "direct light", monitor,
+                                        [&](std::size_t begin, std::size_t end) {
+                                          for (std::size_t p = begin; p < end; ++p)
+                                            straight[p] =
+                                                at_facets(result, light, p, at.of(p), way_to_facet(is_outline[p]));
+                                          return 0ull;
+                                        });
   if (blocks.done < count) return {};
+  take_off_caustics(result, light, at, is_outline, E);
 
   const auto less = [&](std::size_t p, const Spectrum& D) {
     Spectrum left = E[p] - D;

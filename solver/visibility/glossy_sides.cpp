@@ -23,7 +23,8 @@ GlossySides::GlossySides(const PatchSet& patches, double diameter) {
   for (const auto& [front, back] : patches.side_material) number_.push_back({of_material[front], of_material[back]});
   plane_.assign(patches.triangle_count(), kNoPlane);
   const auto is_glossy = [&](TriangleId t) { return lobe(t, kFront) || lobe(t, kBack); };
-  for (const TrianglesInPlane& same : largest_planes(patches, diameter, is_glossy, true)) {
+  const bool all_narrow = std::ranges::all_of(lobes_, [](const Lobe& l) { return l.sharpness() >= kNarrow; });
+  for (const TrianglesInPlane& same : largest_planes(patches, diameter, is_glossy, all_narrow)) {
     Plane plane{same.plane};
     for (const TriangleId t : same.triangles) {
       plane_[t] = static_cast<std::uint32_t>(planes_.size());

@@ -36,12 +36,12 @@ class GlossySides {
   /// Null, or the lobe of that side where it is so narrow that rays all around do not find a light over it, and in no
   /// plane that they look at: particles find what it sends on (illumination/caustic_legs.h).
   const Lobe* narrow_without_plane(TriangleId t, Side side) const {
-    constexpr double kNarrow = 50;  // exponent, by judgement
     const Lobe* of_side = lobe(t, side);
     return of_side && of_side->sharpness() >= kNarrow && plane_[t] == kNoPlane ? of_side : nullptr;
   }
 
  private:
+  static constexpr double kNarrow = 50;  // exponent, by judgement
   static constexpr std::uint16_t kNone = 0xffff;
   std::vector<Lobe> lobes_;  ///< by glossy material
   // By triangle; empty without gloss.

@@ -186,5 +186,25 @@ TEST(Photons, TellTheIrradianceAroundAPoint) {
   EXPECT_EQ(irradiance(PhotonMap(), surface, {0, 0, 0}, PatchId{0}, 1000, 1, room)[0], 0);
 }
 
+TEST(Photons, OfTheOtherSideOfAPartitionTellNothing) {
+  // A wall without thickness stands across the floor, the lamp on one side of it.
+  PatchBuilder b(0);
+  b.rectangle({-1, -1, 0}, {1, 0, 0}, {0, 2, 0}, 4, 8).rectangle({0, -1, 0}, {1, 0, 0}, {0, 2, 0}, 4, 8);
+  b.rectangle({0, -1, 0}, {0, 2, 0}, {0, 0, 2}, 8, 8);
+  Lights lights;
+  lights.luminaires.push_back(test::point_lamp({0.5, 0, 1}, 4 * std::numbers::pi * 10));
+  const test::LitPatches scene(test::two_sided(test::joined(b.build())), std::move(lights));
+  const Illumination light(scene.problem);
+  const PhotonMap map(send_photons(light, 300'000, std::array{ParticleWay::straight}, 1));
+  const VertexLightmap points = make_lightmap(scene.patches);
+  const SmoothSurface surface(scene.patches, points);
+  PhotonsAround room;
+  for (const double x : {-0.01, 0.01}) {
+    const Hit below = scene.rays.first_hit(scene.patches, {{x, 0.05, 0.005}, {0, 0, -1}});
+    const double E = x < 0 ? 0 : 10 * std::pow(1 + std::pow(0.5 - x, 2) + 0.05 * 0.05, -1.5);
+    EXPECT_NEAR(irradiance(map, surface, {x, 0.05, 0}, below.patch, 1000, 0.2, room)[0], E, 0.4 + 0.1 * E) << x;
+  }
+}
+
 }  // namespace
 }  // namespace clerestory

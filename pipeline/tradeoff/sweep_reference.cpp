@@ -9,6 +9,7 @@
 #include "pipeline/scene_checks.h"
 #include "solver/evaluate/points_by_room.h"
 #include "solver/evaluate/two_gathers.h"
+#include "solver/illumination/caustic_light.h"
 #include "solver/illumination/illumination.h"
 #include "solver/model/error.h"
 #include "solver/model/parallel.h"
@@ -16,6 +17,7 @@
 #include "solver/model/streams.h"
 #include "solver/model/units.h"
 #include "solver/paths/path_tracer.h"
+#include "solver/paths/without_caustics.h"
 #include "solver/run/accuracy.h"
 #include "solver/run/solve.h"
 #include "solver/sampling/unit_square.h"
@@ -99,7 +101,10 @@ ReceivingPoint SweepReference::place(std::size_t i) const {
 
 bool SweepReference::add_paths(int paths, const Monitor& monitor) {
   const Problem problem = prepared_.scene.problem();
-  const Illumination light(problem);
+  if (rounds_ == 0)
+    caustics_ = caustic_irradiance(problem, points_.size(), [&](std::size_t i) { return place(i); }).E;
+  const WithoutCaustics apart(problem);
+  const Illumination light(apart.problem());
   const PointIrradiance at = trace_paths_at(
       light, points_.size(), [&](std::size_t i) { return place(i); }, paths,
       stream_key(seed_, kReferencePaths, ++rounds_), "reference", monitor);
@@ -107,7 +112,7 @@ bool SweepReference::add_paths(int paths, const Monitor& monitor) {
   const double before = static_cast<double>(paths_), now = paths, all = before + now;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     ReferencePoint& to = points_[i];
-    to.E = (before * to.E + now * photometric(at.E[i])) / all;
+    to.E = (before * to.E + now * photometric(at.E[i] + caustics_[i])) / all;
     to.std_error = std::hypot(before * to.std_error, now * photometric(at.std_error[i])) / all;
   }
   paths_ += paths;

@@ -72,6 +72,7 @@ class SweepReference {
   PreparedToSolve prepared_;
   std::vector<ReferencePoint> points_;
   std::vector<ReferenceRoom> rooms_;
+  Field caustics_;  ///< at the points, of particles of its own [W/m2]
   long long paths_ = 0;
   double tolerance_ = 0, diagonal_ = 0;
 };

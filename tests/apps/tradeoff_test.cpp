@@ -174,7 +174,7 @@ TEST(Tradeoff, WhatAKilledSweepLeftTheNextOneRemoves) {
   program.signal(SIGKILL);
   EXPECT_EQ(program.wait().exit_code, 128 + SIGKILL);
   EXPECT_TRUE(out.listing().starts_with(".sweep-")) << out.listing();
-  EXPECT_EQ(run_program({"tradeoff", scene, "-o", out / ".", "--time-limit", "60"}).exit_code, 0);
+  EXPECT_EQ(run_program({"tradeoff", scene, "-o", out / ".", "--time-limit", "15"}).exit_code, 0);
   EXPECT_EQ(out.listing().find(".sweep-"), std::string::npos) << out.listing();
 }
 

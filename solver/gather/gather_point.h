@@ -42,7 +42,7 @@ RayShares plan_bundle(const Illumination& light, const Vec3& p, const Vec3& n, c
 
 /// Lobes are half as wide again as what they show, at the least: they need more rays than the sun's disc.
 inline DeltaEffort delta_effort(const GatherPattern& pattern) {
-  return {.sun_rays = pattern.quality().sun_rays, .gloss_rays = 4 * pattern.quality().sun_rays};
+  return {.sun_rays = pattern.quality().sun_rays, .gloss_rays = 3 * pattern.quality().sun_rays};
 }
 
 /// Irradiance at p (lifted) on a plane of unit normal n.

@@ -54,7 +54,7 @@ struct Quality {
 
 Quality coarse(const HierarchyOptions& o) {
   return {{.bundle_rays = std::max(32, o.bundle_rays / 4), .bright_rays = 16, .uniform = 0.02, .seed = o.seed + 1},
-          {.shadow_rays = 16, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
+          {.shadow_rays = 16, .gloss_rays = 8, .edge_rays = 16, .sky_rays = 0, .seed = o.seed + 1},
           1e-3};
 }
 Quality full(const HierarchyOptions& o, std::size_t leaves, bool by_spot = false) {

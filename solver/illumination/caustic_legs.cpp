@@ -154,6 +154,7 @@ std::vector<CausticSide> caustic_sides(const Problem& problem, bool with_gloss) 
     const TriangleId t{i};
     const Material& material = patches.front_material(t);
     const bool is_mirror = material.turns_rays() && rays.plane_of(t) == kNoPlane;
+    if (!(length(rays.normal(t)) > 0.5)) continue;  // without area
     for (const Side side : {kFront, kBack}) {
       if (!is_mirror && !(with_gloss && rays.gloss().narrow_without_plane(t, side))) continue;
       CausticSide& to = sides.emplace_back();

@@ -101,8 +101,7 @@ ReceivingPoint SweepReference::place(std::size_t i) const {
 
 bool SweepReference::add_paths(int paths, const Monitor& monitor) {
   const Problem problem = prepared_.scene.problem();
-  if (rounds_ == 0)
-    caustics_ = caustic_irradiance(problem, points_.size(), [&](std::size_t i) { return place(i); }).E;
+  if (rounds_ == 0) caustics_ = caustic_irradiance(problem, points_.size(), [&](std::size_t i) { return place(i); }).E;
   const WithoutCaustics apart(problem);
   const Illumination light(apart.problem());
   const PointIrradiance at = trace_paths_at(

@@ -40,11 +40,11 @@ Pilot pilot(const PathEstimator& estimator, std::size_t points, const PointOf& p
 }
 
 /// Sums over the points, each relative to its own light: dark rooms count as bright ones do.
-struct Compared {
+struct PilotsCompared {
   double one = 0, two = 0;  ///< variance times rays
   double missed = 0, variance = 0, points = 0;
 
-  Compared(const Pilot& a, const Pilot& b) {
+  PilotsCompared(const Pilot& a, const Pilot& b) {
     for (std::size_t k = 0; k < a.E.size(); ++k) {
       const double E = std::max(a.E[k], b.E[k]);
       if (!(E > 0)) continue;
@@ -73,7 +73,7 @@ ReferencePaths::ReferencePaths(const Illumination& light, std::size_t points, co
   const Pilot one = pilot(estimator_, points, point_of, stream_key(key, kErrorPilots, 0), monitor),
               two = pilot(both_->estimator(), points, point_of, stream_key(key, kErrorPilots, 1), monitor);
   if (monitor.should_stop()) return;
-  const Compared compared(one, two);
+  const PilotsCompared compared(one, two);
   if (compared.missed < -kSure * std::sqrt(compared.variance)) return;
   from_both_ends_ = compared.one > kMuchBetter * compared.two ||
                     compared.missed > std::max(kMissed * compared.points, kSure * std::sqrt(compared.variance));

@@ -15,8 +15,6 @@ namespace {
 constexpr int kMostHalvings = 16;  // of an element in one call: eight of its edges
 constexpr double kSigmas = 3;
 
-Vec3 vec(const std::array<float, 3>& v) { return {double{v[0]}, double{v[1]}, double{v[2]}}; }
-
 /// Luminous flux on the four parts of a triangle [W].
 struct Parts {
   std::array<double, 4> flux{}, squares{};
@@ -59,7 +57,7 @@ std::size_t halve_at_caustics(ElementMesh& mesh, const Problem& before, std::spa
     std::vector<Parts> parts(leaves.size());
     for (std::size_t k = 0; k < legs.size(); ++k)
       if (const PatchId p = patch_of(patches, legs[k]); p.valid())
-        parts[p].add(mesh.corner_positions(leaves[p]), vec(legs[k].to), double{flux[k]});
+        parts[p].add(mesh.corner_positions(leaves[p]), legs[k].end(), double{flux[k]});
     std::vector<std::pair<double, std::uint32_t>> worst;
     for (std::size_t j = 0, i = 0; j < numbers.size(); ++j)
       for (const std::size_t end = i + mesh.leaves_under(numbers[j]); i < end; ++i) {

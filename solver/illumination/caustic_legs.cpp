@@ -28,7 +28,6 @@ std::array<float, 3> floats(const Vec3& v) {
 std::array<float, 3> floats(const Spectrum& s) {
   return {static_cast<float>(s[0]), static_cast<float>(s[1]), static_cast<float>(s[2])};
 }
-Vec3 vec(const std::array<float, 3>& v) { return {double{v[0]}, double{v[1]}, double{v[2]}}; }
 
 double area_of(const CausticSide& side) {
   const auto& [a, b, c] = side.corners;
@@ -216,9 +215,8 @@ PatchId patch_of(const PatchSet& patches, const CausticLeg& leg) {
 CausticLanding landing_of(const Problem& problem, const CausticLeg& leg) {
   const PatchId patch = patch_of(problem.patches, leg);
   if (!patch.valid()) return {};
-  const Vec3 from = vec(leg.from), to = vec(leg.to);
-  const Spectrum flux(double{leg.flux[0]}, double{leg.flux[1]}, double{leg.flux[2]});
-  return {patch, to, normalized(to - from), leg.light, flux * problem.rays.glass_transmittance(from, to)};
+  const Vec3 from = leg.start(), to = leg.end();
+  return {patch, to, normalized(to - from), leg.light, leg.sent() * problem.rays.glass_transmittance(from, to)};
 }
 
 Field caustics_on_patches(const Problem& problem, std::span<const CausticLeg> legs) {

@@ -28,8 +28,6 @@ constexpr double kBeyond = 2e-6;          // of the diameter: legs pass the disc
 constexpr std::size_t kAtOnce = 1 << 21;  // of what they find, about: 64 MB
 constexpr std::size_t kRound = 64;        // tasks before what they found is summed
 
-Vec3 vec(const std::array<float, 3>& v) { return {double{v[0]}, double{v[1]}, double{v[2]}}; }
-
 /// What a point sees of its plane: a polygon around it, and the kernel on that.
 struct Kernel {
   Frame frame;
@@ -85,7 +83,7 @@ struct Kernel {
 template <class Passed>
 void pass(const Discs& discs, std::span<const ReceivingPoint> points, std::span<const std::uint32_t> numbers,
           const CausticLeg& leg, double beyond, const Passed& passed) {
-  const Vec3 from = vec(leg.from), d = vec(leg.to) - from, way = d * (1 + beyond / std::max(beyond, length(d)));
+  const Vec3 from = leg.start(), d = leg.end() - from, way = d * (1 + beyond / std::max(beyond, length(d)));
   const Vec3 to = from + way;
   discs.along(from, to, [&](std::uint32_t disc, double share) {
     const std::uint32_t p = numbers[disc];
@@ -191,7 +189,7 @@ CausticIrradiance caustic_irradiance(const Problem& problem, std::span<const Cau
   std::vector<std::atomic<char>> glass(has_glass ? legs.size() : 0);  // of a leg: 0 not known, 1 none, 2 some
   const auto leg_meets_glass = [&](std::size_t k) {
     if (glass[k].load(std::memory_order_relaxed) == 0) {
-      const Spectrum passes = problem.rays.glass_transmittance(vec(legs[k].from), vec(legs[k].to));
+      const Spectrum passes = problem.rays.glass_transmittance(legs[k].start(), legs[k].end());
       glass[k].store(passes[0] == 1 && passes[1] == 1 && passes[2] == 1 ? 1 : 2, std::memory_order_relaxed);
     }
     return glass[k].load(std::memory_order_relaxed) == 2;
@@ -206,8 +204,8 @@ CausticIrradiance caustic_irradiance(const Problem& problem, std::span<const Cau
           pass(discs, points, lit, legs[k], kBeyond * problem.rays.diameter(), [&](std::uint32_t p, const Vec3& x) {
             const double w = (*kernels[number_of[p]])(x);
             if (w == 0) return;
-            Spectrum E = Spectrum(double{legs[k].flux[0]}, double{legs[k].flux[1]}, double{legs[k].flux[2]}) * w;
-            if (has_glass && leg_meets_glass(k)) E *= problem.rays.glass_transmittance(vec(legs[k].from), x);
+            Spectrum E = legs[k].sent() * w;
+            if (has_glass && leg_meets_glass(k)) E *= problem.rays.glass_transmittance(legs[k].start(), x);
             of_block[b].push_back({p, static_cast<std::uint32_t>(k), E});
           });
     });

@@ -33,6 +33,10 @@ struct CausticLeg {
   TriangleId triangle;            ///< of the rays, that it ends on; invalid where it leaves the scene
   bool on_front;                  ///< of the triangle
   std::array<float, 2> uv;        ///< weights of its corners 1 and 2
+
+  Vec3 start() const { return {double{from[0]}, double{from[1]}, double{from[2]}}; }
+  Vec3 end() const { return {double{to[0]}, double{to[1]}, double{to[2]}}; }
+  Spectrum sent() const { return {double{flux[0]}, double{flux[1]}, double{flux[2]}}; }
 };
 
 /// Legs that copies have in common.

@@ -39,7 +39,6 @@ enum Stream : std::uint64_t {
   kMatrixPairs = 0xd1,
   kEchoFactors = 0xd2,
   kParticles = 0x52,
-  kPhotons = 0x53,
   kCaustics = 0x5a,
   kErrorCaustics = 0x5b,
   kErrorPilots = 0x5c,

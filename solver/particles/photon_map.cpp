@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "solver/model/parallel.h"
-#include "solver/model/streams.h"
 
 namespace clerestory {
 namespace {
@@ -77,34 +76,6 @@ PhotonMap::PhotonMap(std::span<const Landing> landings) {
       }
     }
   });
-}
-
-std::vector<Landing> send_photons(const Illumination& light, std::size_t particles, std::span<const ParticleWay> wanted,
-                                  std::uint64_t seed, const Monitor& monitor) {
-  const Emission emission(light);
-  constexpr std::size_t kBlock = 1 << 10, kRound = 256;
-  const std::size_t blocks = (particles + kBlock - 1) / kBlock;
-  std::vector<Landing> photons;
-  double followed = 0;
-  for (std::size_t begin = 0; begin < blocks; begin += kRound) {
-    monitor.report("photons", static_cast<double>(begin) / static_cast<double>(blocks));
-    std::vector<ParticleWays> ways(std::min(kRound, blocks - begin));
-    parallel_for(ways.size(), 1, [&](std::size_t from, std::size_t to) {
-      for (std::size_t b = from; b < to; ++b) {
-        const std::size_t first = (begin + b) * kBlock;
-        ways[b] = follow_particles(light, emission, stream_key(seed, kPhotons), static_cast<std::uint32_t>(first),
-                                   static_cast<std::uint32_t>(std::min(kBlock, particles - first)), monitor);
-        std::erase_if(ways[b].landings,
-                      [&](const Landing& l) { return std::ranges::find(wanted, l.way()) == wanted.end(); });
-      }
-    });
-    if (monitor.should_stop()) break;
-    followed = static_cast<double>(std::min((begin + ways.size()) * kBlock, particles));
-    for (const ParticleWays& w : ways) photons.insert(photons.end(), w.landings.begin(), w.landings.end());
-  }
-  for (Landing& photon : photons)
-    for (float& flux : photon.flux) flux = static_cast<float>(flux / followed);
-  return photons;
 }
 
 Spectrum irradiance(const PhotonMap& map, const SmoothSurface& surface, const Vec3& p, PatchId patch, std::size_t count,

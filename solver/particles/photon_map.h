@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "solver/model/monitor.h"
 #include "solver/particles/landings.h"
 #include "solver/particles/surface_kernels.h"
 
@@ -64,13 +63,6 @@ class PhotonMap {
   };
   std::vector<Carried> carried_;
 };
-
-/// Landings of `particles` particles from all lights whose way is one of those asked for, each with its share of the
-/// light's flux. Same for any thread count.
-///
-/// monitor  when it stops, those of the particles followed so far.
-std::vector<Landing> send_photons(const Illumination& light, std::size_t particles, std::span<const ParticleWay> ways,
-                                  std::uint64_t seed, const Monitor& monitor = {});
 
 /// Room that look-ups use again.
 struct PhotonsAround {

@@ -21,6 +21,7 @@
 #include "solver/particles/photon_map.h"
 #include "solver/paths/path_tracer.h"
 #include "tests/bench/row.h"
+#include "tests/support/send_photons.h"
 
 namespace clerestory {
 namespace {
@@ -95,7 +96,8 @@ void photon_map() {
   const Problem problem = start.prepared.scene.problem();
   const Illumination light(problem);
   constexpr std::array kAll{ParticleWay::straight, ParticleWay::turned, ParticleWay::scattered};
-  std::vector<Landing> photons = send_photons(light, 700'000, kAll, 1), places = send_photons(light, 100'000, kAll, 2);
+  std::vector<Landing> photons = test::send_photons(light, 700'000, kAll, 1),
+                       places = test::send_photons(light, 100'000, kAll, 2);
   photons.resize(1'000'000), places.resize(100'000);
   double built = 1e9, queried = 1e9, of_cores = 1e9;
   for (int k = 0; k < 5; ++k) {  // the fastest: other programs slow it down

@@ -18,6 +18,7 @@
 #include "solver/model/parallel.h"
 #include "solver/model/units.h"
 #include "solver/run/solve.h"
+#include "tests/support/curved_mirrors.h"
 #include "tests/support/lit_patches.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
@@ -46,22 +47,9 @@ double landed(const test::LitPatches& scene) {
   return sum;
 }
 
-// A part of a cylinder of radius 1 m, open towards +x, stands on the floor; the sun at 45 degrees over +x. What meets
-// it at the angle a from its middle and the height s over a plane goes on in plan along (-cos 2 a, sin 2 a) by s:
-//   x = -cos a + s cos 2 a,  y = sin a - s sin 2 a,   E = rho E_sun sin 45 cos a / |cos a - 2 s|
-constexpr double kEnd = 50 * kPi / 180, kHeight = 0.5, kPerAngle = kReflectance * kSunlight / std::numbers::sqrt2;
-constexpr int kFacets = 400;
-PatchBuilder cylinder() {
-  PatchBuilder b(0);
-  b.rectangle({-1.2, -1.2, 0}, {2.4, 0, 0}, {0, 2.4, 0});
-  b.mirror(kReflectance);
-  const auto at = [](int k) {
-    const double a = -kEnd + 2 * kEnd * k / kFacets;
-    return Vec3{-std::cos(a), std::sin(a), 0};
-  };
-  for (int k = 0; k < kFacets; ++k) b.rectangle(at(k), at(k + 1) - at(k), {0, 0, kHeight});
-  return b;
-}
+constexpr double kEnd = test::CylinderMirror::kEnd, kHeight = test::CylinderMirror::kHeight;
+constexpr double kPerAngle = kReflectance * kSunlight / std::numbers::sqrt2;
+PatchBuilder cylinder() { return test::cylinder_mirror(400, kReflectance); }
 const double kAll = kPerAngle * kHeight * 2 * std::sin(kEnd);  // flux of all of them
 /// Of one way to a place in the plane at height z: where it is, and what it brings.
 struct OnPlane {
@@ -123,28 +111,10 @@ TEST(CausticLight, BesideAPartitionIsWhatItIsThereAndNotHalf) {
 }
 
 TEST(CausticLight, OfAParaboloidGoesToItsFocus) {
-  // z = r^2 / (4 f) to r = 0.5 m, the sun in its axis; a disc of 0.2 m half-way to the focus looks down. Light of r
-  // passes its height at r' = r (f - h) / (f - z), as much as falls on the ring: E = rho E_sun r dr / (r' dr').
-  constexpr double kF = 0.5, kH = 0.25, kDisc = 0.2, kRim = 0.5;
-  constexpr int kRings = 100, kAround = 400;
-  PatchBuilder b(0);
-  const auto on_disc = [](int k) {
-    const double phi = 2 * kPi * k / kAround;
-    return Vec3{kDisc * std::cos(phi), kDisc * std::sin(phi), kH};
-  };
-  for (int k = 0; k < kAround; ++k) b.triangle({0, 0, kH}, on_disc(k + 1), on_disc(k));
-  b.mirror(kReflectance);
-  const auto at = [](int ring, int k) {
-    const double r = kRim * ring / kRings, phi = 2 * kPi * k / kAround;
-    return Vec3{r * std::cos(phi), r * std::sin(phi), r * r / (4 * kF)};
-  };
-  for (int ring = 0; ring < kRings; ++ring)
-    for (int k = 0; k < kAround; ++k) {
-      if (ring > 0) b.triangle(at(ring, k), at(ring + 1, k), at(ring, k + 1));
-      b.triangle(at(ring, k + 1), at(ring + 1, k), at(ring + 1, k + 1));
-    }
-  const test::LitPatches scene = lit(b.build(), sun_at({0, 0, 1}), 1 << 19, 400);
-  const auto passes_at = [&](double r) { return r * (kF - kH) / (kF - r * r / (4 * kF)); };
+  // As much as falls on a ring passes: E = rho E_sun r dr / (r' dr').
+  constexpr double kDisc = test::Paraboloid::kDisc, kH = test::Paraboloid::kDiscHeight;
+  const test::LitPatches scene = lit(test::paraboloid(100, 400, kReflectance).build(), sun_at({0, 0, 1}), 1 << 19, 400);
+  const auto& passes_at = test::Paraboloid::passes_at;
   double rim = kDisc;  // of what meets the disc
   while (passes_at(rim) < kDisc) rim += 1e-6;
   const double all = kReflectance * kSunlight * kPi * (rim * rim - kDisc * kDisc);

@@ -8,13 +8,14 @@
 #include <gtest/gtest.h>
 
 #include "solver/particles/photon_map.h"
+#include "tests/support/curved_mirrors.h"
 #include "tests/support/lit_patches.h"
 #include "tests/support/room_with_blocks.h"
+#include "tests/support/send_photons.h"
 
 namespace clerestory {
 namespace {
 
-using test::PatchBuilder;
 constexpr double kPi = std::numbers::pi, kSunlight = 500, kReflectance = 0.9;
 constexpr std::array kCaustic{ParticleWay::turned};
 
@@ -23,7 +24,7 @@ std::vector<Landing> caustic(PatchSet patches, const Vec3& to_sun, std::size_t p
   Lights lights;
   lights.suns = {{{normalized(to_sun), Spectrum(kSunlight)}}};
   const test::LitPatches scene(std::move(patches), std::move(lights));
-  return send_photons(Illumination(scene.problem), particles, kCaustic, 1);
+  return test::send_photons(Illumination(scene.problem), particles, kCaustic, 1);
 }
 
 double flux_of(const std::vector<Landing>& landings) {
@@ -33,20 +34,8 @@ double flux_of(const std::vector<Landing>& landings) {
 }
 
 TEST(Caustic, OfACylinderIsTheNephroidOfTheClosedForm) {
-  // A part of a cylinder of radius 1 m, open towards +x, stands on the floor; the sun at 45 degrees over +x. What meets
-  // it at the angle a from its middle and the height s goes on in plan along (-cos 2 a, sin 2 a) by s:
-  //   x = -cos a + s cos 2 a,  y = sin a - s sin 2 a,   E = rho E_sun sin 45 cos a / |cos a - 2 s|
-  constexpr double kEnd = 50 * kPi / 180, kHeight = 0.5;
-  constexpr int kFacets = 400;
-  PatchBuilder b(0);
-  b.rectangle({-1.2, -1.2, 0}, {2.4, 0, 0}, {0, 2.4, 0});
-  b.mirror(kReflectance);
-  const auto at = [](int k) {
-    const double a = -kEnd + 2 * kEnd * k / kFacets;
-    return Vec3{-std::cos(a), std::sin(a), 0};
-  };
-  for (int k = 0; k < kFacets; ++k) b.rectangle(at(k), at(k + 1) - at(k), {0, 0, kHeight});
-  const std::vector<Landing> landings = caustic(b.build(), {1, 0, 1}, 3'000'000);
+  constexpr double kEnd = test::CylinderMirror::kEnd, kHeight = test::CylinderMirror::kHeight;
+  const std::vector<Landing> landings = caustic(test::cylinder_mirror(400, kReflectance).build(), {1, 0, 1}, 3'000'000);
   const double per_angle = kReflectance * kSunlight * std::sin(kPi / 4);
   const double all = per_angle * 2 * std::sin(kEnd) * kHeight;
   EXPECT_NEAR(flux_of(landings), all, 0.003 * all);  // 300,000 particles of strata
@@ -84,30 +73,11 @@ TEST(Caustic, OfACylinderIsTheNephroidOfTheClosedForm) {
 }
 
 TEST(Caustic, OfAParaboloidGoesToItsFocus) {
-  // z = r^2 / (4 f) to r = 0.5 m, the sun in its axis; a disc of 0.2 m half-way to the focus looks down. Light of r
-  // passes its height at r' = r (f - h) / (f - z): all that passes within its rim is what of r lies between its shadow
-  // and where r' is its radius.
-  constexpr double kF = 0.5, kH = 0.25, kDisc = 0.2, kRim = 0.5;
-  constexpr int kRings = 50, kAround = 120;
-  PatchBuilder b(0);
-  const auto on_disc = [](int k) {
-    const double phi = 2 * kPi * k / kAround;
-    return Vec3{kDisc * std::cos(phi), kDisc * std::sin(phi), kH};
-  };
-  for (int k = 0; k < kAround; ++k) b.triangle({0, 0, kH}, on_disc(k + 1), on_disc(k));
-  b.mirror(kReflectance);
-  const auto at = [](int ring, int k) {
-    const double r = kRim * ring / kRings, phi = 2 * kPi * k / kAround;
-    return Vec3{r * std::cos(phi), r * std::sin(phi), r * r / (4 * kF)};
-  };
-  for (int ring = 0; ring < kRings; ++ring)
-    for (int k = 0; k < kAround; ++k) {
-      if (ring > 0) b.triangle(at(ring, k), at(ring + 1, k), at(ring, k + 1));
-      b.triangle(at(ring, k + 1), at(ring + 1, k), at(ring + 1, k + 1));
-    }
-  const std::vector<Landing> landings = caustic(b.build(), {0, 0, 1}, 2'000'000);
+  // All that passes within the rim of the disc is what of r lies between its shadow and where r' is its radius.
+  constexpr double kF = test::Paraboloid::kFocus, kH = test::Paraboloid::kDiscHeight, kDisc = test::Paraboloid::kDisc;
+  const std::vector<Landing> landings = caustic(test::paraboloid(50, 120, kReflectance).build(), {0, 0, 1}, 2'000'000);
 
-  const auto passes_at = [&](double r) { return r * (kF - kH) / (kF - r * r / (4 * kF)); };
+  const auto& passes_at = test::Paraboloid::passes_at;
   // r of r': r^2 (r' / 4 f) + r (f - h) - r' f = 0
   const auto comes_from = [&](double passed) {
     const double a = passed / (4 * kF), c = kF - kH;

@@ -16,6 +16,7 @@
 #include "tests/support/lit_patches.h"
 #include "tests/support/luminaires.h"
 #include "tests/support/room_with_blocks.h"
+#include "tests/support/send_photons.h"
 
 namespace clerestory {
 namespace {
@@ -115,12 +116,12 @@ struct Corner {
 TEST(Photons, AreOfTheWaysThatWereAskedForAndTogetherAllLight) {
   const Corner corner;
   constexpr std::size_t kParticles = 200'000;
-  const std::vector<Landing> all = send_photons(corner.light, kParticles, kAll, 1);
+  const std::vector<Landing> all = test::send_photons(corner.light, kParticles, kAll, 1);
   double flux[3] = {0, 0, 0};
   for (const Landing& l : all) flux[static_cast<int>(l.way())] += double{l.flux[0]};
   for (const ParticleWay way : kAll) {
     double alone = 0;
-    for (const Landing& l : send_photons(corner.light, kParticles, std::array{way}, 1)) {
+    for (const Landing& l : test::send_photons(corner.light, kParticles, std::array{way}, 1)) {
       EXPECT_EQ(l.way(), way);
       alone += double{l.flux[0]};
     }
@@ -153,7 +154,8 @@ TEST(Photons, AreOfTheWaysThatWereAskedForAndTogetherAllLight) {
 
 TEST(Photons, ComeFromWhereTheirDirectionSays) {
   const Corner corner;
-  for (const Landing& l : send_photons(corner.light, 2000, std::array{ParticleWay::straight, ParticleWay::turned}, 1)) {
+  for (const Landing& l :
+       test::send_photons(corner.light, 2000, std::array{ParticleWay::straight, ParticleWay::turned}, 1)) {
     const Vec3 x{double{l.position[0]}, double{l.position[1]}, double{l.position[2]}};
     const Vec3 lamp{l.way() == ParticleWay::straight ? 0.5 : -0.5, 1, 1};
     EXPECT_LT(length(normalized(lamp - x) - l.direction()), 3e-4);  // packed to 1e-4
@@ -167,7 +169,7 @@ TEST(Photons, TellTheIrradianceAroundAPoint) {
   lights.luminaires.push_back(test::point_lamp({0, 0, 1}, 4 * std::numbers::pi * 10));
   const test::LitPatches scene(test::joined(b.build()), std::move(lights));
   const Illumination light(scene.problem);
-  const PhotonMap map(send_photons(light, 1'000'000, kAll, 1));
+  const PhotonMap map(test::send_photons(light, 1'000'000, kAll, 1));
   const VertexLightmap points = make_lightmap(scene.patches);
   const SmoothSurface surface(scene.patches, points);
   PhotonsAround room;
@@ -195,7 +197,7 @@ TEST(Photons, OfTheOtherSideOfAPartitionTellNothing) {
   lights.luminaires.push_back(test::point_lamp({0.5, 0, 1}, 4 * std::numbers::pi * 10));
   const test::LitPatches scene(test::two_sided(test::joined(b.build())), std::move(lights));
   const Illumination light(scene.problem);
-  const PhotonMap map(send_photons(light, 300'000, std::array{ParticleWay::straight}, 1));
+  const PhotonMap map(test::send_photons(light, 300'000, std::array{ParticleWay::straight}, 1));
   const VertexLightmap points = make_lightmap(scene.patches);
   const SmoothSurface surface(scene.patches, points);
   PhotonsAround room;

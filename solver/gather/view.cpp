@@ -28,7 +28,7 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
       values[k] = light_.sky(direction) * std::numbers::pi * hit.transmittance;
       if (found) found->add(k, RowEntry::of_sky(pack_direction(direction), std::numbers::pi * hit.transmittance));
     } else if (hit.patch.valid()) {
-      Spectrum back = light_.sampler.glow()[hit.patch];
+      Spectrum back = light_.glow_at(hit, rays[k]);
       double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
       back *= share;
       if (owner == kNobody) {

@@ -5,10 +5,13 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "solver/gather/gather_point.h"
 #include "solver/gather/gather_time.h"
 #include "solver/hierarchy/feet.h"
+#include "solver/hierarchy/fine_radiosity.h"
+#include "solver/hierarchy/leaf_errors.h"
 #include "solver/illumination/caustic_light.h"
 #include "solver/lights/luminaire.h"
 #include "solver/model/parallel.h"
@@ -18,10 +21,6 @@
 namespace clerestory {
 namespace {
 
-/// The darkest irradiance whose relative error counts, as share of the room's mean.
-constexpr double kDark = 0.02;
-/// Share of the difference between corners that may hide a shadow which lies between them.
-constexpr double kSteep = 0.25;
 constexpr int kMostRounds = 40;
 /// Points gathered after halving, as a share of those there were before, that a quality must leave time for.
 constexpr double kPointsOfHalves = 0.5;
@@ -37,6 +36,8 @@ constexpr double kInShade = 0.5;
 /// Shortest edges, for each share of the tolerance: points so near each other have the same light, but for sun and
 /// luminaires. Detail far below what elements resolve.
 constexpr double kSamePlace = 2.5;
+/// Points of the field, times those there were before, that look-ups are told of.
+constexpr double kWorthTaking = 1.3;
 
 /// The points of the mesh that are worth a gather: all, or so many, those of the largest elements.
 std::vector<bool> worth_a_gather(const ElementMesh& mesh, std::size_t most) {
@@ -103,14 +104,14 @@ GatherQuality quality_in_time(const Illumination& light, const ElementMesh& mesh
 /// Gathers at points that are new since the last time, in parallel.
 class Gatherer {
  public:
-  Gatherer(const Problem& problem, const Field& B, const SlitLight& slit_light, const ElementMesh& mesh,
-           const FieldOptions& options, const RowLight* layers, const Monitor& monitor)
-      : light_(gather_illumination_by_slits(problem, B, slit_light, options.seed, monitor)),
+  Gatherer(Illumination light, const ElementMesh& mesh, const FieldOptions& options, const RowLight* layers,
+           const Monitor& monitor)
+      : light_(std::move(light)),
         pattern_(quality_in_time(light_, mesh, options, monitor), options.seed),
         mesh_(mesh),
         pilots_(wants_plan(light_, pattern_)),
         layers_(layers),
-        most_delta_(most_delta_light(problem, options.shortest_edge.least())),
+        most_delta_(most_delta_light(light_.problem, options.shortest_edge.least())),
         worth_(worth_a_gather(mesh, options.most_points)),
         plans_(pilots_ ? mesh.points().position.size() : 0) {
     if (pilots_) pilot_of_ = stand_ins(mesh, worth_, options.shortest_edge, kNearby, kSameHorizon);
@@ -268,54 +269,16 @@ class Gatherer {
   std::vector<std::optional<GatherPlan>> plans_;  ///< by point of the mesh as it was at first
 };
 
-/// Gradient at each point of what E is there, averaged over the leaves around it.
-std::vector<Vec3> gradients(const ElementMesh& mesh, const std::vector<std::uint32_t>& leaves,
-                            const std::vector<double>& E) {
-  std::vector<Vec3> gradient(E.size());
-  std::vector<double> weight(E.size());
-  for (const std::uint32_t leaf : leaves) {
-    if (mesh[leaf].penumbra) continue;  // a slope of its own, between sides that have others
-    const auto point = mesh.points_of(leaf);
-    const auto x = mesh.corner_positions(leaf);
-    const Vec3 n = cross(x[1] - x[0], x[2] - x[0]);
-    const double twice_area = length(n);
-    if (!(twice_area > 0)) continue;
-    Vec3 g;
-    for (std::size_t k = 0; k < 3; ++k) g += cross(n, x[(k + 2) % 3] - x[(k + 1) % 3]) * E[point[k]];
-    // g is the gradient times the square of 2 A; weighted by area, 2 A is left.
-    for (const std::uint32_t p : point) gradient[p] += g / twice_area, weight[p] += twice_area;
-  }
-  for (std::size_t p = 0; p < gradient.size(); ++p)
-    if (weight[p] > 0) gradient[p] = gradient[p] / weight[p];
-  return gradient;
-}
-
-/// How far the middle of edge k lies off the straight line between its ends.
-double bulge(const std::array<Vec3, 3>& x, const std::array<std::uint32_t, 3>& point, const std::vector<Vec3>& gradient,
-             std::size_t k) {
-  const std::size_t next = (k + 1) % 3;
-  return dot(gradient[point[k]] - gradient[point[next]], x[next] - x[k]) / 8;
-}
-
 struct Candidate {
   double error;  ///< relative to the irradiance there [1]
   std::uint32_t leaf;
 };
 
-/// Leaves of which all corners are known.
-std::vector<std::uint32_t> known_leaves(const ElementMesh& mesh, const std::vector<bool>& known) {
-  std::vector<std::uint32_t> leaves = mesh.leaves();
-  std::erase_if(leaves, [&](std::uint32_t leaf) {
-    const auto point = mesh.points_of(leaf);
-    return !known[point[0]] || !known[point[1]] || !known[point[2]];
-  });
-  return leaves;
-}
-
-/// Leaves that interpolate worse than the tolerance, the worst first.
-std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options) {
+/// Leaves that interpolate worse than the tolerance, of those that changed: the others were halved or are good. The
+/// worst first.
+std::vector<Candidate> too_coarse(const ElementMesh& mesh, LeafErrors& errors, const FieldOptions& options) {
   std::vector<Candidate> worst;
-  for (const auto& [leaf, off, soft, E, std_error] : leaf_errors(mesh, field)) {
+  for (const auto& [leaf, off, soft, E, std_error] : errors.of_changed()) {
     const PatchId patch{std::size_t{mesh[leaf].patch}};
     double shortest = options.shortest_edge.of(mesh.patches(), patch);
     if (!mesh.patches().has_outline(patch))  // what comes through a slit falls on less than any element
@@ -331,43 +294,9 @@ std::vector<Candidate> too_coarse(const ElementMesh& mesh, const VertexField& fi
 
 }  // namespace
 
-std::vector<LeafError> leaf_errors(const ElementMesh& mesh, const VertexField& field) {
-  const std::vector<std::uint32_t> leaves = known_leaves(mesh, field.known);
-  std::vector<double> E(field.E.size()), soft_E(E.size());
-  for (std::size_t p = 0; p < E.size(); ++p) {
-    E[p] = luminous_mean(field.E[p]);
-    soft_E[p] = E[p] - luminous_mean(field.delta_light[p]);
-  }
-  const auto mean = [](const std::array<std::uint32_t, 3>& point, const std::vector<double>& of) {
-    return (of[point[0]] + of[point[1]] + of[point[2]]) / 3;
-  };
-  const PatchSet& patches = mesh.patches();
-  const auto room_of = [&](std::uint32_t leaf) { return patches.room_of(mesh[leaf].patch); };
-  std::vector<double> flux(patches.room_count()), area(flux.size());
-  for (const std::uint32_t leaf : leaves) {
-    flux[room_of(leaf)] += mesh[leaf].area * mean(mesh.points_of(leaf), E);
-    area[room_of(leaf)] += mesh[leaf].area;
-  }
-  const std::vector<Vec3> gradient = gradients(mesh, leaves, E), soft_gradient = gradients(mesh, leaves, soft_E);
-  std::vector<LeafError> errors;
-  for (const std::uint32_t leaf : leaves) {
-    const auto point = mesh.points_of(leaf);
-    const auto x = mesh.corner_positions(leaf);
-    const auto off_in = [&](const std::vector<double>& of, const std::vector<Vec3>& slope) {
-      double off = 0;
-      for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(bulge(x, point, slope, k)));
-      const auto [low, high] = std::minmax({of[point[0]], of[point[1]], of[point[2]]});
-      return mesh[leaf].penumbra ? off : std::max(off, kSteep * (high - low));
-    };
-    errors.push_back({leaf, off_in(E, gradient), off_in(soft_E, soft_gradient),
-                      std::max(mean(point, E), kDark * flux[room_of(leaf)] / area[room_of(leaf)]),
-                      mean(point, field.std_error)});
-  }
-  return errors;
-}
-
 VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& mesh, const FieldOptions& options,
-                         const Monitor& monitor, const RowLight* layers, const SlitLight& slit_light) {
+                         const Monitor& monitor, const RowLight* layers, const SlitLight& slit_light,
+                         FineRadiosity* fine) {
   VertexField field;
   if (layers) field.layers.channels = field.delta_layers.channels = static_cast<int>(layers->lanes());
   if (monitor.should_stop()) {
@@ -380,16 +309,20 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
   }
   field.E = field.delta_light = Field(0, problem.patches.channels);
   cut_at_feet(mesh, options.shortest_edge, kFinest, options.most_points);
-  Gatherer gatherer(problem, B, slit_light, mesh, options, layers, monitor);
+  Illumination light = gather_illumination_by_slits(problem, B, slit_light, options.seed, monitor);
+  if (fine) light.fine_glow = [fine](PatchId patch, const Vec3& x) { return fine->at(patch, x); };
+  Gatherer gatherer(std::move(light), mesh, options, layers, monitor);
   field.in_time = !gatherer.is_coarser_than(options.quality);
   const double before = monitor.seconds_left();
+  std::size_t taken = 0;
+  LeafErrors errors(mesh, field);
   for (int round = 0;; ++round) {
     field.complete = gatherer.gather(field, monitor);
     const std::size_t points = mesh.points().position.size();
     if (!field.complete || round == kMostRounds || points >= options.most_points) break;
     const double left = monitor.seconds_left(), most_in_time = static_cast<double>(points) * left / (before - left);
     std::vector<std::uint32_t> marked;
-    for (const Candidate& c : too_coarse(mesh, field, options)) {
+    for (const Candidate& c : too_coarse(mesh, errors, options)) {
       if (points + marked.size() >= options.most_points) break;
       if (monitor.has_deadline() && static_cast<double>(marked.size() + 1) > most_in_time / kPointsOfHalf) {
         field.in_time = false;
@@ -398,30 +331,13 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
       marked.push_back(c.leaf);
     }
     if (marked.empty()) break;
+    if (fine && static_cast<double>(points) > kWorthTaking * static_cast<double>(taken)) {
+      fine->take(field);
+      taken = points;
+    }
     mesh.split(marked);
   }
   return field;
-}
-
-Field leaf_irradiance(const ElementMesh& mesh, const Field& E) {
-  constexpr double kMostBulge = 0.1;  // of the mean: more is a shadow's edge, and no curve
-  const std::vector<std::uint32_t> leaves = mesh.leaves();
-  Field mean(leaves.size(), E.channels);
-  std::vector<double> value(E.size());
-  for (int c = 0; c < E.channels; ++c) {
-    for (std::size_t p = 0; p < value.size(); ++p) value[p] = E.at(p, c);
-    const std::vector<Vec3> gradient = gradients(mesh, leaves, value);
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-      const auto point = mesh.points_of(leaves[i]);
-      const auto x = mesh.corner_positions(leaves[i]);
-      const double corners = (value[point[0]] + value[point[1]] + value[point[2]]) / 3;
-      double off = 0;
-      for (std::size_t k = 0; k < 3; ++k) off += bulge(x, point, gradient, k) / 3;
-      const double most = kMostBulge * std::abs(corners);  // all but dark, an estimate may be below 0
-      mean.at(i, c) = corners + std::clamp(off, -most, most);
-    }
-  }
-  return mean;
 }
 
 }  // namespace clerestory

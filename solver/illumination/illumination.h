@@ -1,6 +1,8 @@
 #pragma once
 // The lights of a problem, ready to be sampled.
 
+#include <functional>
+
 #include "solver/illumination/bright_areas.h"
 #include "solver/illumination/light_sampler.h"
 #include "solver/illumination/problem.h"
@@ -19,6 +21,8 @@ struct Illumination {
   OpeningSampler slits;        ///< that rays meet by chance only, and surfaces are seen through
   SlitGains slit_gains{};      ///< for a gather; see find_slit_gains()
   BrightAreas bright_areas{};  ///< for a gather; see look_at_bright_areas()
+  /// For a gather: what comes back from a place on a patch [W/m2]; empty: what does on the average.
+  std::function<Spectrum(PatchId, const Vec3&)> fine_glow{};
 
   explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}
   /// glow: see LightSampler; outlives this.
@@ -28,6 +32,13 @@ struct Illumination {
         sky(p.lights),
         openings({p.lights.sky_openings().begin(), p.lights.sky_openings().end()}, p.rays.diameter()),
         slits(slits_among(p.lights.openings), p.rays.diameter()) {}
+  /// What comes back from where a ray meets a patch [W/m2]. From afar the mean of all of it tells as much.
+  Spectrum glow_at(const Hit& hit, const Ray& ray) const {
+    constexpr double kNear = 16;  // times the area: four times as far off as it is wide
+    if (!fine_glow || hit.distance * hit.distance > kNear * problem.patches.area[hit.patch])
+      return sampler.glow()[hit.patch];
+    return fine_glow(hit.patch, hit.position(ray));
+  }
   /// Lets a gather look at bright patches that lie together as one.
   void look_at_bright_areas() { bright_areas = find_bright_areas(problem.patches, sampler); }
 };

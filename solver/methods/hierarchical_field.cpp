@@ -6,6 +6,9 @@
 #include <optional>
 #include <span>
 
+#include "solver/hierarchy/fine_radiosity.h"
+#include "solver/hierarchy/gradients.h"
+#include "solver/hierarchy/leaf_errors.h"
 #include "solver/illumination/caustic_legs.h"
 #include "solver/illumination/direct.h"
 #include "solver/illumination/near_luminaires.h"
@@ -253,7 +256,7 @@ void fill_unknown(const ElementMesh& mesh, const std::vector<std::uint32_t>& tra
 
 void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<3>& out) {
   std::vector<double> interpolation, std_error, halvings;
-  for (const auto& [leaf, off, soft, E, std_error_there] : leaf_errors(mesh, field)) {
+  for (const auto& [leaf, off, soft, E, std_error_there] : LeafErrors(mesh, field).of_changed()) {
     out.shapes.push_back(mesh.corner_positions(leaf));
     interpolation.push_back(E > 0 ? off / E : 0);
     std_error.push_back(E > 0 ? std_error_there / E : 0);
@@ -313,9 +316,12 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   }
   const double share_of_later = monitor.has_deadline() ? share_for_later(transport, coarse.solution, mesh, options) : 0;
   const double left = monitor.seconds_left();
-  VertexField field = gather_field(transport, coarse.solution.B, mesh, vertices,
-                                   monitor.within(std::max((1 - share_of_later) * left, kSecondsOfField)),
-                                   of_layers ? &*of_layers : nullptr, coarse.solution.slit_light);
+  std::optional<FineRadiosity> fine;
+  if (!coarse.delta_light.value.empty()) fine.emplace(mesh, coarse.elements, coarse.solution.E, coarse.delta_light);
+  VertexField field =
+      gather_field(transport, coarse.solution.B, mesh, vertices,
+                   monitor.within(std::max((1 - share_of_later) * left, kSecondsOfField)),
+                   of_layers ? &*of_layers : nullptr, coarse.solution.slit_light, fine ? &*fine : nullptr);
   if (options.elements.debug) view_errors(mesh, field, options.elements.debug->error);
 
   Solution solution = std::move(coarse.solution);

@@ -44,13 +44,7 @@ PatchId PatchSet::patch_at(TriangleId t, Side s, double u, double v) const {
   std::array<double, 3> weight = {1 - u - v, s == kFront ? u : v, s == kFront ? v : u};
   std::uint32_t node = root.value;
   while (splits[node].first_part != SplitNode::kNone) {
-    const std::size_t e = splits[node].edge;
-    const double start = weight[e], end = weight[(e + 1) % 3], apex = weight[(e + 2) % 3];
-    // The middle is (1 - at) start + at end.
-    const double at = splits[node].at, rest = 1 - at;
-    const bool second = end * rest > start * at;
-    weight = second ? std::array{start / rest, end - start * (at / rest), apex}
-                    : std::array{start - end * (rest / at), end / at, apex};
+    const bool second = go_to_part(splits[node].at, splits[node].edge, weight);
     node = splits[node].first_part + second;
   }
   return PatchId{std::size_t{splits[node].patch}};

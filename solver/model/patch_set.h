@@ -36,6 +36,24 @@ struct SplitNode {
   bool is_cut() const { return at != 0.5f; }  ///< where light asked for it, and not halved
 };
 
+/// Goes from a parted triangle to one of its parts: from shares of its corners at a place to those of the part's there.
+/// Whether that is part 1.
+inline bool go_to_part(float share_at, std::size_t edge, std::array<double, 3>& share) {
+  constexpr std::array<std::size_t, 5> kCorner{0, 1, 2, 0, 1};
+  const double start = share[edge], end = share[kCorner[edge + 1]], apex = share[kCorner[edge + 2]];
+  if (share_at == 0.5f) {
+    const bool second = end > start;
+    share = second ? std::array{2 * start, end - start, apex} : std::array{start - end, 2 * end, apex};
+    return second;
+  }
+  // The middle is (1 - at) start + at end.
+  const double at = double{share_at}, rest = 1 - at;
+  const bool second = end * rest > start * at;
+  share = second ? std::array{start / rest, end - start * (at / rest), apex}
+                 : std::array{start - end * (rest / at), end / at, apex};
+  return second;
+}
+
 /// A triangle always blocks light (glass: passes its share; a mirror: sends it on); its sides take part in transport as
 /// patches. All coordinates are relative to `origin`, so that float rays lose nothing in georeferenced models.
 ///

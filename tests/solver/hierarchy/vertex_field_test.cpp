@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/gather/gather_point.h"
+#include "solver/hierarchy/gradients.h"
 #include "solver/model/parallel.h"
 #include "tests/solver/hierarchy/field_scenes.h"
 #include "tests/support/gather_quality.h"

@@ -1,0 +1,55 @@
+#pragma once
+// What leaves places on the elements of a transport, finer than the mean of each.
+
+#include <array>
+#include <vector>
+
+#include "solver/hierarchy/element_mesh.h"
+
+namespace clerestory {
+
+struct VertexField;
+
+/// In a corner half of what a point sees lies so near that the mean of an element is not the light there. First linear
+/// across each element, by the means of those around; then between the vertices of a field, on elements halved since.
+/// Means of elements stay, and so does what sun and luminaires bring: their edges are sharper than corners know.
+class FineRadiosity {
+ public:
+  /// mesh         its leaves are the elements, in that order; it may be halved from then on. Outlives this, as
+  ///              `elements` do.
+  /// E            irradiance of the elements, delta_light the part of it from sun and luminaires [W/m2].
+  FineRadiosity(const ElementMesh& mesh, const PatchSet& elements, const Field& E, const Field& delta_light);
+
+  /// From here on what the field knows at the points of the mesh as it is now.
+  void take(const VertexField& field);
+
+  /// Radiosity at x on that element, or as far beside it as rays in float are [W/m2].
+  Spectrum at(PatchId element, const Vec3& x) const;
+
+ private:
+  /// x lies at shares to_1 . (x - corner) and to_2 . (x - corner) of corners 1 and 2 of an element.
+  struct Place {
+    Vec3 corner;
+    std::array<float, 3> to_1, to_2;
+    std::uint32_t root;  ///< its node
+  };
+  struct Node {
+    std::uint32_t first;  ///< of the parts, the other follows it; of a leaf: its number
+    float at;             ///< share of the edge where it is parted; of a leaf 0
+    std::uint32_t edge;
+  };
+  using Corners = std::array<std::array<float, kMaxChannels>, 3>;  ///< radiosity there
+
+  void set_corners();
+
+  const ElementMesh& mesh_;
+  const PatchSet& elements_;
+  std::vector<Spectrum> soft_,
+      even_;                  ///< by element: E without sun and luminaires; what leaves it beside rho times that
+  std::vector<Spectrum> E_;   ///< by point, without sun and luminaires
+  std::vector<Place> place_;  ///< by element
+  std::vector<Node> nodes_;   ///< by element of the mesh
+  std::vector<Corners> leaves_;
+};
+
+}  // namespace clerestory

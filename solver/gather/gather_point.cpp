@@ -127,7 +127,7 @@ Sum from_area(const AreaView& view, const AreaPlan& plan, const AreaCells& cells
 }
 
 Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& frame, const GatherPattern& pattern,
-                        const GatherPlan& plan, const View& view, LightRow* row) {
+                        const RayShares& shares, const View& view, LightRow* row) {
   const int count = pattern.quality().bright_rays;
   const RayBudget& budget = pattern.quality().bundle;
   const RayScene& rays = light.problem.rays;
@@ -147,7 +147,7 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
     if (!(s.density > 0)) continue;
     const Vec3 d = normalized(s.end - p);
     if (view.owner_of(d, length(s.end - p), s.patch) != kNobody) continue;  // rays of its owner find it
-    const std::size_t share = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
+    const std::size_t share = share_of(shares, budget, shares.empty() ? 0 : pattern.stratum_of(frame, d));
     const double bundle = static_cast<double>(share) * budget.strata() * dot(frame.n, d) / kPi;
     const double share_of_both = balance_heuristic(count * s.density, bundle);
     shadows.send(p, s.end, {s.irradiance * share_of_both, s.patch, s.weight * share_of_both});
@@ -158,8 +158,8 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
 
 /// What mirrors and panes show of bright patches: by shadow rays to their images.
 Spectrum bright_patches_in_mirrors(const Illumination& light, const Vec3& p, const Frame& frame,
-                                   const GatherPattern& pattern, const GatherPlan& plan, const View& view,
-                                   LightRow* row) {
+                                   const GatherPattern& pattern, const GatherPlan& plan, const RayShares& shares,
+                                   const View& view, LightRow* row) {
   const RayScene& rays = light.problem.rays;
   const RayBudget& budget = pattern.quality().bundle;
   Spectrum sum(0.0);
@@ -173,7 +173,7 @@ Spectrum bright_patches_in_mirrors(const Illumination& light, const Vec3& p, con
       const Vec3 image = mirror.image_of(s.end), d = normalized(image - p);
       const Spectrum passes = rays.transmittance_by_mirrors(p, image, way);
       if (passes.is_black() || view.owner_of(d) != kNobody) continue;
-      const std::size_t share = share_of(plan.bundle, budget, plan.bundle.empty() ? 0 : pattern.stratum_of(frame, d));
+      const std::size_t share = share_of(shares, budget, shares.empty() ? 0 : pattern.stratum_of(frame, d));
       const double bundle = static_cast<double>(share) * budget.strata() * dot(frame.n, d) / kPi;
       const Spectrum weight =
           passes * (balance_heuristic(plan.rays_in_mirror * s.density, bundle) / plan.rays_in_mirror);
@@ -184,13 +184,10 @@ Spectrum bright_patches_in_mirrors(const Illumination& light, const Vec3& p, con
   return sum;
 }
 
-GatheredLight gather_as_planned(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
-                                const GatherPlan& plan, unsigned long long& rays, LightRow* row) {
-  if (row) row->clear();
-  const int to_bright_patches = bright_rays(light, pattern, plan);
-  const Frame frame(n);
-  const View view(light, p, frame, to_bright_patches, plan);
-  Sum sum = from_bundle(view, frame, pattern.bundle(), plan.bundle, rays, row);
+/// What the areas of the plan give.
+Sum from_areas(const View& view, const GatherPlan& plan, const Illumination& light, const GatherPattern& pattern,
+               const Vec3& p, const Vec3& n, unsigned long long& rays, LightRow* row) {
+  Sum sum;
   const auto look_at = [&](const LightArea& area, std::uint32_t owner, const AreaPlan& area_plan) {
     // A plan may come from the other side of the area's plane: from there no ray belongs to it.
     if (!(dot(p - area.centre, area.normal) > 0)) return;
@@ -205,37 +202,58 @@ GatheredLight gather_as_planned(const Illumination& light, const Vec3& p, const 
   for (std::size_t k = 0; k < plan.bright_areas.size(); ++k)
     look_at(light.bright_areas.shape[plan.bright_areas[k]], kBrightAreas + plan.bright_areas[k],
             plan.bright_area_plans[k]);
+  return sum;
+}
 
-  GatheredLight at{sum.E, Spectrum(0.0), std::sqrt(sum.variance)};
-  if (to_bright_patches > 0) {
-    at.E += bright_patches(light, p, frame, pattern, plan, view, row);
+/// All that is left to chance: the bundle with those shares, and bright patches that it shares their light with.
+Sum from_all_around(const View& view, const Frame& frame, const GatherPlan& plan, const RayShares& shares,
+                    const Illumination& light, const GatherPattern& pattern, const Vec3& p, unsigned long long& rays,
+                    LightRow* row) {
+  Sum sum = from_bundle(view, frame, pattern.bundle(), shares, rays, row);
+  if (const int to_bright_patches = bright_rays(light, pattern, plan); to_bright_patches > 0) {
+    sum.E += bright_patches(light, p, frame, pattern, shares, view, row);
     rays += static_cast<unsigned>(to_bright_patches);
   }
   if (!plan.mirrors.empty()) {
-    at.E += bright_patches_in_mirrors(light, p, frame, pattern, plan, view, row);
+    sum.E += bright_patches_in_mirrors(light, p, frame, pattern, plan, shares, view, row);
     rays += 2 * static_cast<unsigned long long>(plan.rays_in_mirror) * plan.mirrors.size();
   }
-  // Where it is all but dark, what differs from a plan's mean may leave less than nothing.
-  at.E = {std::max(0.0, at.E[0]), std::max(0.0, at.E[1]), std::max(0.0, at.E[2])};
-  if (!light.problem.lights.empty()) {
-    at.delta_light = light.sampler.delta_light(p, n, delta_effort(pattern), pattern.sun_key(), row);
-    at.E += at.delta_light;
-  }
-  CLERESTORY_ASSERT(all_finite(at.E), ==, true);
-  return at;
+  return sum;
 }
 
 }  // namespace
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                            const GatherPlan& plan, unsigned long long& rays, LightRow* row) {
-  const GatheredLight at = gather_as_planned(light, p, n, pattern, plan, rays, row);
+  if (row) row->clear();
+  const Frame frame(n);
+  const View view(light, p, frame, bright_rays(light, pattern, plan), plan);
+  LightRow of_lights;
+  GatheredLight at;
+  if (!light.problem.lights.empty())
+    at.delta_light =
+        light.sampler.delta_light(p, n, delta_effort(pattern), pattern.sun_key(), row ? &of_lights : nullptr);
+  const Sum areas = from_areas(view, plan, light, pattern, p, n, rays, row);
+  const std::size_t of_areas = row ? row->size() : 0;
+  const auto look_around = [&](const RayShares& shares) {
+    if (row) row->resize(of_areas);
+    const Sum around = from_all_around(view, frame, plan, shares, light, pattern, p, rays, row);
+    // Where it is all but dark, what differs from a plan's mean may leave less than nothing.
+    const Spectrum E = areas.E + around.E;
+    at.E = at.delta_light + Spectrum(std::max(0.0, E[0]), std::max(0.0, E[1]), std::max(0.0, E[2]));
+    at.std_error = std::sqrt(areas.variance + around.variance);
+    return std::sqrt(around.variance);
+  };
+  const double left_to_chance = look_around(plan.bundle);
   const RayBudget& bundle = pattern.quality().bundle;
   const bool has_more_rays = plan.bundle.empty() && bundle.deepest() > bundle.least();
-  if (!has_more_rays || !(at.std_error > pattern.quality().noise * luminous_mean(at.E))) return at;
-  GatherPlan sharper = plan;
-  sharper.bundle = plan_bundle(light, p, n, pattern, plan, rays);
-  return sharper.bundle.empty() ? at : gather_as_planned(light, p, n, pattern, sharper, rays, row);
+  if (has_more_rays && left_to_chance > pattern.quality().noise * luminous_mean(at.E)) {
+    const RayShares sharper = plan_bundle(light, p, n, pattern, plan, rays);
+    if (!sharper.empty()) look_around(sharper);
+  }
+  if (row) row->insert(row->end(), of_lights.begin(), of_lights.end());
+  CLERESTORY_ASSERT(all_finite(at.E), ==, true);
+  return at;
 }
 
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,

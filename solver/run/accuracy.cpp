@@ -24,7 +24,7 @@ constexpr Effort kDraft{
     .most_points = 100'000,
     .caustic_particles = 131072,
     .caustic_legs = 800,
-    .vertices = {.bundle = {8, 64, 64}, .area = {0, 1, 0.02, 128}, .bright_rays = 32, .sun_rays = 8},
+    .vertices = {.bundle = {8, 64, 256}, .area = {0, 1, 0.02, 128}, .bright_rays = 32, .sun_rays = 8, .noise = 0.1},
     .sensors = {.bundle = {16, 256, 512}, .area = {1, 3, 0.01, 512}, .bright_rays = 64, .sun_rays = 16, .noise = 0.1},
     .gathers_vertices = false,
     .direct = {.shadow_rays = 16, .edge_rays = 64, .sky_rays = 128},
@@ -50,7 +50,7 @@ constexpr Effort kStandard{
     .most_points = 400'000,
     .caustic_particles = 524288,
     .caustic_legs = 1600,
-    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 32, .sun_rays = 16, .noise = 0.1},
+    .vertices = {.bundle = {16, 256, 768}, .area = {1, 3, 0.01, 512}, .bright_rays = 32, .sun_rays = 16, .noise = 0.06},
     .sensors =
         {.bundle = {16, 256, 2048}, .area = {2, 6, 0.003, 8192}, .bright_rays = 256, .sun_rays = 32, .noise = 0.05},
     .gathers_vertices = true,

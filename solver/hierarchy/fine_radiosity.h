@@ -23,8 +23,8 @@ class FineRadiosity {
   /// From here on what the field knows at the points of the mesh as it is now.
   void take(const VertexField& field);
 
-  /// Radiosity at x on that element, or as far beside it as rays in float are [W/m2].
-  Spectrum at(PatchId element, const Vec3& x) const;
+  /// What radiosity at x on that element is above its mean; x may be as far beside it as rays in float are [W/m2].
+  Spectrum above_mean(PatchId element, const Vec3& x) const;
 
  private:
   /// x lies at shares to_1 . (x - corner) and to_2 . (x - corner) of corners 1 and 2 of an element.
@@ -38,18 +38,16 @@ class FineRadiosity {
     float at;             ///< share of the edge where it is parted; of a leaf 0
     std::uint32_t edge;
   };
-  using Corners = std::array<std::array<float, kMaxChannels>, 3>;  ///< radiosity there
 
   void set_corners();
 
   const ElementMesh& mesh_;
   const PatchSet& elements_;
-  std::vector<Spectrum> soft_,
-      even_;                  ///< by element: E without sun and luminaires; what leaves it beside rho times that
-  std::vector<Spectrum> E_;   ///< by point, without sun and luminaires
+  Field soft_;                ///< by element: E without sun and luminaires
+  Field E_;                   ///< by point, without sun and luminaires
   std::vector<Place> place_;  ///< by element
   std::vector<Node> nodes_;   ///< by element of the mesh
-  std::vector<Corners> leaves_;
+  std::vector<float> above_;  ///< leaves x 3 corners x channels
 };
 
 }  // namespace clerestory

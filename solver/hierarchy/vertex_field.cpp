@@ -270,26 +270,51 @@ class Gatherer {
 };
 
 struct Candidate {
-  double error;  ///< relative to the irradiance there [1]
+  double error;  ///< relative to the irradiance there, times the root of its area: as it adds to a mean square [m]
   std::uint32_t leaf;
 };
 
-/// Leaves that interpolate worse than the tolerance, of those that changed: the others were halved or are good. The
-/// worst first.
-std::vector<Candidate> too_coarse(const ElementMesh& mesh, LeafErrors& errors, const FieldOptions& options) {
-  std::vector<Candidate> worst;
-  for (const auto& [leaf, off, soft, E, std_error] : errors.of_changed()) {
-    const PatchId patch{std::size_t{mesh[leaf].patch}};
-    double shortest = options.shortest_edge.of(mesh.patches(), patch);
-    if (!mesh.patches().has_outline(patch))  // what comes through a slit falls on less than any element
-      shortest *= std::clamp(kMuchOff * options.tolerance * E / soft, kFinest, 1.0);
-    if (!(mesh.longest_edge(leaf) > shortest)) continue;
-    if (off > std::max(options.tolerance * E, std_error)) worst.push_back({off / E, leaf});
+/// Leaves that interpolate worse than the tolerance, while they are halved.
+class TooCoarse {
+ public:
+  TooCoarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options)
+      : mesh_(mesh), options_(options), errors_(mesh, field) {}
+
+  /// As the field and the mesh are now, the worst first.
+  const std::vector<Candidate>& find() {
+    std::vector<bool> is_new(mesh_.size());
+    std::vector<Candidate> found;
+    for (const LeafError& e : errors_.of_changed()) {
+      is_new[e.leaf] = true;
+      if (is_worth_halving(e)) found.push_back({e.off / e.E * std::sqrt(mesh_[e.leaf].area), e.leaf});
+    }
+    std::erase_if(worst_, [&](const Candidate& c) { return is_new[c.leaf] || mesh_[c.leaf].parted; });
+    worst_.insert(worst_.end(), found.begin(), found.end());
+    std::sort(worst_.begin(), worst_.end(), [](const Candidate& a, const Candidate& b) {
+      return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
+    });
+    return worst_;
   }
-  std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
-    return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
-  });
-  return worst;
+
+ private:
+  bool is_worth_halving(const LeafError& e) const {
+    const PatchId patch{std::size_t{mesh_[e.leaf].patch}};
+    double shortest = options_.shortest_edge.of(mesh_.patches(), patch);
+    if (!mesh_.patches().has_outline(patch))  // what comes through a slit falls on less than any element
+      shortest *= std::clamp(kMuchOff * options_.tolerance * e.E / e.soft, kFinest, 1.0);
+    return mesh_.longest_edge(e.leaf) > shortest && e.off > std::max(options_.tolerance * e.E, e.std_error);
+  }
+
+  const ElementMesh& mesh_;
+  const FieldOptions& options_;
+  LeafErrors errors_;
+  std::vector<Candidate> worst_;
+};
+
+/// Of points that are left, how many a round may make: the worst elements are halved again before others are at all.
+std::size_t points_of_round(std::size_t points, std::size_t most) {
+  constexpr std::size_t kLeastShare = 50;
+  return std::min(most - points, std::max((most - points) / 2, most / kLeastShare));
 }
 
 }  // namespace
@@ -310,20 +335,21 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
   field.E = field.delta_light = Field(0, problem.patches.channels);
   cut_at_feet(mesh, options.shortest_edge, kFinest, options.most_points);
   Illumination light = gather_illumination_by_slits(problem, B, slit_light, options.seed, monitor);
-  if (fine) light.fine_glow = [fine](PatchId patch, const Vec3& x) { return fine->at(patch, x); };
+  if (fine) light.above_mean = [fine](PatchId patch, const Vec3& x) { return fine->above_mean(patch, x); };
   Gatherer gatherer(std::move(light), mesh, options, layers, monitor);
   field.in_time = !gatherer.is_coarser_than(options.quality);
   const double before = monitor.seconds_left();
   std::size_t taken = 0;
-  LeafErrors errors(mesh, field);
+  TooCoarse too_coarse(mesh, field, options);
   for (int round = 0;; ++round) {
     field.complete = gatherer.gather(field, monitor);
     const std::size_t points = mesh.points().position.size();
     if (!field.complete || round == kMostRounds || points >= options.most_points) break;
     const double left = monitor.seconds_left(), most_in_time = static_cast<double>(points) * left / (before - left);
     std::vector<std::uint32_t> marked;
-    for (const Candidate& c : too_coarse(mesh, errors, options)) {
-      if (points + marked.size() >= options.most_points) break;
+    const std::size_t most_of_round = points_of_round(points, options.most_points);
+    for (const Candidate& c : too_coarse.find()) {
+      if (marked.size() >= most_of_round) break;
       if (monitor.has_deadline() && static_cast<double>(marked.size() + 1) > most_in_time / kPointsOfHalf) {
         field.in_time = false;
         break;

@@ -21,8 +21,8 @@ struct Illumination {
   OpeningSampler slits;        ///< that rays meet by chance only, and surfaces are seen through
   SlitGains slit_gains{};      ///< for a gather; see find_slit_gains()
   BrightAreas bright_areas{};  ///< for a gather; see look_at_bright_areas()
-  /// For a gather: what comes back from a place on a patch [W/m2]; empty: what does on the average.
-  std::function<Spectrum(PatchId, const Vec3&)> fine_glow{};
+  /// For a gather: what comes back from a place on a patch, above what does from all of it [W/m2]; empty: nothing.
+  std::function<Spectrum(PatchId, const Vec3&)> above_mean{};
 
   explicit Illumination(const Problem& p) : Illumination(p, p.patches.M) {}
   /// glow: see LightSampler; outlives this.
@@ -35,9 +35,9 @@ struct Illumination {
   /// What comes back from where a ray meets a patch [W/m2]. From afar the mean of all of it tells as much.
   Spectrum glow_at(const Hit& hit, const Ray& ray) const {
     constexpr double kNear = 16;  // times the area: four times as far off as it is wide
-    if (!fine_glow || hit.distance * hit.distance > kNear * problem.patches.area[hit.patch])
-      return sampler.glow()[hit.patch];
-    return fine_glow(hit.patch, hit.position(ray));
+    const Spectrum mean = sampler.glow()[hit.patch];
+    if (!above_mean || hit.distance * hit.distance > kNear * problem.patches.area[hit.patch]) return mean;
+    return mean + above_mean(hit.patch, hit.position(ray));
   }
   /// Lets a gather look at bright patches that lie together as one.
   void look_at_bright_areas() { bright_areas = find_bright_areas(problem.patches, sampler); }

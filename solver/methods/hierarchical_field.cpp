@@ -322,6 +322,7 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
       gather_field(transport, coarse.solution.B, mesh, vertices,
                    monitor.within(std::max((1 - share_of_later) * left, kSecondsOfField)),
                    of_layers ? &*of_layers : nullptr, coarse.solution.slit_light, fine ? &*fine : nullptr);
+  fine.reset();
   if (options.elements.debug) view_errors(mesh, field, options.elements.debug->error);
 
   Solution solution = std::move(coarse.solution);

@@ -23,13 +23,19 @@ namespace {
 //   house, 100 mm          603    542,961  554,532    538,836 286,042 14,767,515     639.9      733
 // (Two threads, one or three channels. The program itself has grown by 5 MiB since.)
 //
+// Since vertices know what leaves places near them:
+//
+//   office, standard       128      5,724    5,824     19,552  11,670   318,042       47.6       50.1
+//   house, fine            603     13,682   14,044    212,621 119,499   817,385      145.5      140.6
+//   contacts (tests/bench), fine                      138,754  71,958                 93.8      109.6
+//
 // With layers, whose arrays live side by side only while elements are shown; without, and predicted, in brackets:
 //
 //   classroom, ten layers, standard                      36,626  21,272 1,348,475       63.7 (56.4)    80 (62)
 //   the same, fine                                      111,228  60,820 2,252,804      109.9 (80.0)   151 (96)
 //   house, three layers, standard                        75,508  45,061   697,973       81.5 (74.2)    89 (70)
 constexpr double kProgram = 34 << 20;
-constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 200, kPoint = 260, kLink = 10;  // [B]
+constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 260, kPoint = 290, kLink = 10;  // [B]
 constexpr double kKeptElement = 150, kElementLane = 24, kPointLane = 24;  // with layers [B]
 
 constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all that was measured

@@ -150,7 +150,8 @@ Spectrum bright_patches(const Illumination& light, const Vec3& p, const Frame& f
     const std::size_t share = share_of(shares, budget, shares.empty() ? 0 : pattern.stratum_of(frame, d));
     const double bundle = static_cast<double>(share) * budget.strata() * dot(frame.n, d) / kPi;
     const double share_of_both = balance_heuristic(count * s.density, bundle);
-    shadows.send(p, s.end, {s.irradiance * share_of_both, s.patch, s.weight * share_of_both});
+    const Spectrum irradiance = light.glow_at(s.patch, s.end, length(s.end - p)) * s.weight;
+    shadows.send(p, s.end, {irradiance * share_of_both, s.patch, s.weight * share_of_both});
   }
   shadows.trace();
   return sum / count;

@@ -52,15 +52,16 @@ inline DeltaEffort delta_effort(const GatherPattern& pattern) {
 /// bright area that it meets. Only what differs from the mean that the plan knows is left to chance: form factors times
 /// that mean are closed forms, so an even sky or bright area that nothing hides is exact. Other bright patches, glowing
 /// or lit, by shadow rays and by the bundle, weighted by the balance heuristic, and so are those that the plan's
-/// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land. What is noisier than the
-/// quality allows is gathered anew, with more of the bundle's rays where a pilot sees contrast: under a bed, in a gap.
+/// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land. Where the
+/// bundle is noisier than the quality allows, it is sent anew, with more rays where a pilot sees contrast: under a bed,
+/// in a gap.
 /// What less than one ray of the bundle finds seldom looks noisy: where it is all the light there is, E is low by a
 /// sixth in the mean, within a standard error as large as itself.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.
 /// row    null, or replaced by what was found, for other light: times this light it is E, but where the rays to an area
-///        found little of the mean that the plan knows.
+///        found little of the mean that the plan knows, and where `light` knows more of patches than their mean.
 GatheredLight gather_point(const Illumination& light, const Vec3& p, const Vec3& n, const GatherPattern& pattern,
                            const GatherPlan& plan, unsigned long long& rays, LightRow* row = nullptr);
 

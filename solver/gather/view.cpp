@@ -28,8 +28,11 @@ void View::look(std::span<const Vec3> directions, std::span<const double> densit
       values[k] = light_.sky(direction) * std::numbers::pi * hit.transmittance;
       if (found) found->add(k, RowEntry::of_sky(pack_direction(direction), std::numbers::pi * hit.transmittance));
     } else if (hit.patch.valid()) {
-      Spectrum back = light_.glow_at(hit, rays[k]);
       double share = owner < kBrightAreas ? slit_gain(owner, directions[k], hit.first) : 1;
+      // A slit's gain is what the place there has over the mean of its element. In mirrors, and so behind one that
+      // hangs on a wall, where a patch sees itself most of all, the mean stays.
+      Spectrum back = share == 1 && !hit.reflected ? light_.glow_at(hit.patch, hit.position(rays[k]), hit.distance)
+                                                   : light_.sampler.glow()[hit.patch];
       back *= share;
       if (owner == kNobody) {
         share = share_of_bundle(hit, rays[k], density[k]);

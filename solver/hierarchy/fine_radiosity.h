@@ -12,7 +12,8 @@ struct VertexField;
 
 /// In a corner half of what a point sees lies so near that the mean of an element is not the light there. First linear
 /// across each element, by the means of those around; then between the vertices of a field, on elements halved since.
-/// Means of elements stay, and so does what sun and luminaires bring: their edges are sharper than corners know.
+/// Means of elements stay. What sun and luminaires bring stays even, as their edges are sharper than corners know, and
+/// so does what diffusers let through.
 class FineRadiosity {
  public:
   /// mesh         its leaves are the elements, in that order; it may be halved from then on. Outlives this, as
@@ -20,7 +21,7 @@ class FineRadiosity {
   /// E            irradiance of the elements, delta_light the part of it from sun and luminaires [W/m2].
   FineRadiosity(const ElementMesh& mesh, const PatchSet& elements, const Field& E, const Field& delta_light);
 
-  /// From here on what the field knows at the points of the mesh as it is now.
+  /// From here on what the field knows at the points of the mesh as it is now: at all of them.
   void take(const VertexField& field);
 
   /// What radiosity at x on that element is above its mean; x may be as far beside it as rays in float are [W/m2].
@@ -39,7 +40,9 @@ class FineRadiosity {
     std::uint32_t edge;
   };
 
-  void set_corners();
+  void reset();
+  template <class AboveAt>
+  void add_leaf(std::size_t element, std::uint32_t leaf, const AboveAt& above_at);
 
   const ElementMesh& mesh_;
   const PatchSet& elements_;

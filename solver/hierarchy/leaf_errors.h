@@ -38,7 +38,7 @@ class LeafErrors {
   std::vector<double> E_, soft_E_;              ///< by point, luminous means
   std::vector<bool> is_changed_;                ///< by point, since the last call
   std::vector<Vec3> gradient_, soft_gradient_;  ///< by point
-  std::vector<double> darkest_;                 ///< by room: the darkest irradiance that counts
+  std::vector<double> darkest_;                 ///< by room: the darkest irradiance that counts, as of the first call
 };
 
 }  // namespace clerestory

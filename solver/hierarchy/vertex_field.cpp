@@ -311,10 +311,12 @@ class TooCoarse {
   std::vector<Candidate> worst_;
 };
 
-/// Of points that are left, how many a round may make: the worst elements are halved again before others are at all.
-std::size_t points_of_round(std::size_t points, std::size_t most) {
-  constexpr std::size_t kLeastShare = 50;
-  return std::min(most - points, std::max((most - points) / 2, most / kLeastShare));
+/// Elements that a round may mark: about half of the points that are left, as one makes two with its neighbours; so the
+/// worst are halved again before others are at all.
+std::size_t marks_of_round(std::size_t points, std::size_t most) {
+  constexpr std::size_t kLeastShare = 100;
+  const std::size_t left = most - points;
+  return std::clamp<std::size_t>(left / 4, std::min(left, most / kLeastShare + 1), left);
 }
 
 }  // namespace
@@ -347,9 +349,9 @@ VertexField gather_field(const Problem& problem, const Field& B, ElementMesh& me
     if (!field.complete || round == kMostRounds || points >= options.most_points) break;
     const double left = monitor.seconds_left(), most_in_time = static_cast<double>(points) * left / (before - left);
     std::vector<std::uint32_t> marked;
-    const std::size_t most_of_round = points_of_round(points, options.most_points);
+    const std::size_t most_marked = marks_of_round(points, options.most_points);
     for (const Candidate& c : too_coarse.find()) {
-      if (marked.size() >= most_of_round) break;
+      if (marked.size() >= most_marked) break;
       if (monitor.has_deadline() && static_cast<double>(marked.size() + 1) > most_in_time / kPointsOfHalf) {
         field.in_time = false;
         break;

@@ -46,6 +46,9 @@ struct VertexField {
 /// at least a quarter of that, as a shadow may lie between them. What is less than the noise of its corners is taken
 /// for noise. Shadow edges never agree, so there the shortest edge decides.
 ///
+/// The worst elements are halved first: those of most error times the root of their area, as they add to a mean square.
+/// In no round do more than half of the points that are left go, so these are halved again before others are at all.
+///
 /// With a deadline the quality is one by which all points of the lightmap and half as many more seem to be done by
 /// then, and the worst elements are halved first, as many as there seems to be time for.
 ///

@@ -32,12 +32,12 @@ struct Illumination {
         sky(p.lights),
         openings({p.lights.sky_openings().begin(), p.lights.sky_openings().end()}, p.rays.diameter()),
         slits(slits_among(p.lights.openings), p.rays.diameter()) {}
-  /// What comes back from where a ray meets a patch [W/m2]. From afar the mean of all of it tells as much.
-  Spectrum glow_at(const Hit& hit, const Ray& ray) const {
+  /// What comes back from x on a patch, seen from so far [W/m2]. From afar the mean of all of it tells as much.
+  Spectrum glow_at(PatchId patch, const Vec3& x, double distance) const {
     constexpr double kNear = 16;  // times the area: four times as far off as it is wide
-    const Spectrum mean = sampler.glow()[hit.patch];
-    if (!above_mean || hit.distance * hit.distance > kNear * problem.patches.area[hit.patch]) return mean;
-    return mean + above_mean(hit.patch, hit.position(ray));
+    const Spectrum mean = sampler.glow()[patch];
+    if (!above_mean || distance * distance > kNear * problem.patches.area[patch]) return mean;
+    return mean + above_mean(patch, x);
   }
   /// Lets a gather look at bright patches that lie together as one.
   void look_at_bright_areas() { bright_areas = find_bright_areas(problem.patches, sampler); }

@@ -317,7 +317,10 @@ HierarchicalField hierarchical_field(const Problem& problem, VertexLightmap map,
   const double share_of_later = monitor.has_deadline() ? share_for_later(transport, coarse.solution, mesh, options) : 0;
   const double left = monitor.seconds_left();
   std::optional<FineRadiosity> fine;
-  if (!coarse.delta_light.value.empty()) fine.emplace(mesh, coarse.elements, coarse.solution.E, coarse.delta_light);
+  // The direct light of `bf` has the sky in it.
+  const bool knows_delta_light = !coarse.delta_light.value.empty() && of_elements.oracle == Oracle::error;
+  if (knows_delta_light && !monitor.should_stop())
+    fine.emplace(mesh, coarse.elements, coarse.solution.E, coarse.delta_light);
   VertexField field =
       gather_field(transport, coarse.solution.B, mesh, vertices,
                    monitor.within(std::max((1 - share_of_later) * left, kSecondsOfField)),

@@ -25,9 +25,9 @@ namespace {
 //
 // Since vertices know what leaves places near them:
 //
-//   office, standard       128      5,724    5,824     19,552  11,670   318,042       47.6       50.1
-//   house, fine            603     13,682   14,044    212,621 119,499   817,385      145.5      140.6
-//   contacts (tests/bench), fine                      138,754  71,958                 93.8      109.6
+//   office, standard       128      4,458    4,530     19,554  11,673   483,584       47.6       50.8
+//   house, fine            603     10,708   10,934    212,764 119,564 1,251,611      138.3      148.1
+//   contacts, fine          72      6,068    5,986    134,540  69,830 1,744,385      101.1      112.8
 //
 // With layers, whose arrays live side by side only while elements are shown; without, and predicted, in brackets:
 //
@@ -35,7 +35,7 @@ namespace {
 //   the same, fine                                      111,228  60,820 2,252,804      109.9 (80.0)   151 (96)
 //   house, three layers, standard                        75,508  45,061   697,973       81.5 (74.2)    89 (70)
 constexpr double kProgram = 34 << 20;
-constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 260, kPoint = 290, kLink = 10;  // [B]
+constexpr double kInputTriangle = 430, kTriangle = 400, kSide = 350, kElement = 300, kPoint = 290, kLink = 10;  // [B]
 constexpr double kKeptElement = 150, kElementLane = 24, kPointLane = 24;  // with layers [B]
 
 constexpr double kLinksOfRay = 0.6, kMostLinksOfElement = 120;  // above all that was measured

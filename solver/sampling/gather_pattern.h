@@ -36,7 +36,7 @@ struct GatherQuality {
   AreaBudget area;   ///< to each opening and each bright area that matters
   int bright_rays;   ///< shadow rays to bright patches
   int sun_rays;      ///< to each sun
-  /// Standard error, as a share of all light at a point, above which it is gathered anew with the bundle's most rays.
+  /// Standard error of the bundle, as a share of all light at a point, above which it is sent anew with its most rays.
   double noise = std::numeric_limits<double>::infinity();
 };
 

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/gather/gather_point.h"
 #include "solver/hierarchy/vertex_field.h"
 #include "tests/solver/hierarchy/field_scenes.h"
+#include "tests/support/gather_quality.h"
 
 namespace clerestory {
 namespace {
@@ -94,6 +96,43 @@ TEST(FineRadiosity, GoesBetweenTheVerticesOfHalvedElements) {
   EXPECT_EQ(error(), taken);
 }
 
+TEST(FineRadiosity, KeepsTheMeansOfElementsBetweenVerticesInThreeChannels) {
+  // Cut, and halved; with light of luminaires, which stays even; dark corners beside bright ones.
+  MeshedRoom room(testing::room_with_box(), 0.6);
+  room.patches.channels = 3;
+  Field rho(room.patches.patch_count(), 3), E(rho.size(), 3), delta(rho.size(), 3);
+  for (std::size_t i = 0; i < rho.size(); ++i) {
+    rho.set(i, {0.2, 0.5, 0.8});
+    delta.set(i, Spectrum(0.5)), E.set(i, Spectrum(1, 2, 3) + delta[i]);
+  }
+  room.patches.rho = rho, room.patches.M = Field(rho.size(), 3);
+  ElementMesh mesh(room.patches, room.map);
+  FineRadiosity fine(mesh, room.patches, E, delta);
+  for (const std::uint32_t leaf : mesh.leaves())
+    if (mesh[leaf].is_leaf() && leaf % 5 == 0) mesh.cut(leaf, leaf % 3, 0.25);
+  mesh.split(mesh.leaves());
+  const std::size_t points = mesh.points().position.size();
+  VertexField field;
+  field.E = field.delta_light = Field(points, 3);
+  field.known.assign(points, true);
+  for (std::size_t p = 0; p < points; ++p) {
+    field.delta_light.set(p, Spectrum(p % 2 ? 7 : 0));
+    field.E.set(p, Spectrum(p % 3 == 0 ? 10 : 0, 1 + p % 5, 2) + field.delta_light[p]);
+  }
+  fine.take(field);
+  std::vector<Spectrum> flux(rho.size());
+  double most = 0;
+  for (const std::uint32_t leaf : mesh.leaves()) {
+    const auto x = mesh.corner_positions(leaf);
+    const std::size_t i = mesh[leaf].patch;
+    const Spectrum middle = fine.above_mean(PatchId{i}, within(x, 1. / 3, 1. / 3));
+    flux[i] += middle * (mesh[leaf].area / room.patches.area[i]), most = std::max(most, middle[0]);
+  }
+  EXPECT_GT(most, 0.05);
+  for (const Spectrum& above : flux)
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(above[c], 0, 1e-5);
+}
+
 TEST(FineRadiosity, IsNeverNegative) {
   const MeshedRoom room(testing::room_with_box(), 0.6);
   Field E(room.patches.patch_count(), 1);  // dark and bright in turn: what is linear would be negative
@@ -101,8 +140,48 @@ TEST(FineRadiosity, IsNeverNegative) {
   const ElementMesh mesh(room.patches, room.map);
   const FineRadiosity fine(mesh, room.patches, E, Field(E.size(), 1));
   for (std::size_t i = 0; i < E.size(); ++i)
-    for (const double a : {0., 0.5, 1.})
-      EXPECT_GE(reflected(fine, room.patches, E, i, within(room.patches.corner_positions(PatchId{i}), a, 0)), 0);
+    for (const double a : {-0.3, 0., 0.5, 1., 1.3})  // beside it, too
+      for (const double b : {-0.3, 0., 0.3})
+        EXPECT_GE(reflected(fine, room.patches, E, i, within(room.patches.corner_positions(PatchId{i}), a, b)), 0);
+}
+
+/// Radiosity of patches that reflect E and emit nothing here.
+Field reflected(const PatchSet& patches, const Field& E) {
+  Field B(E.size(), 1);
+  for (std::size_t i = 0; i < E.size(); ++i) B.set(i, patches.rho[i] * E[i]);
+  return B;
+}
+
+TEST(FineRadiosity, TellsAGatherInACornerWhatIsNearIt) {
+  // Light on the floor and the walls falls off towards the edges where they meet; elements of 60 cm against 6 cm.
+  const MeshedRoom coarse(testing::room_with_box(), 0.6), fine(testing::room_with_box(), 0.06);
+  const auto light_in = [](const PatchSet& patches) {
+    return [&patches](const Vec3& x) {
+      const Vec3 p = x + patches.origin;
+      return 2 + 10 * std::min({p.x, 4 - p.x, 1.0}) + 10 * std::min(p.z, 1.0);
+    };
+  };
+  const Field E = means(coarse.patches, light_in(coarse.patches));
+  const Field B = reflected(coarse.patches, E),
+              B_fine = reflected(fine.patches, means(fine.patches, light_in(fine.patches)));
+  const ElementMesh mesh(coarse.patches, coarse.map);
+  const FineRadiosity near(mesh, coarse.patches, E, Field(E.size(), 1));
+  const Problem problem = coarse.problem(), problem_fine = fine.problem();
+  const Illumination by_means(problem, B), exact(problem_fine, B_fine);
+  Illumination by_places(problem, B);
+  by_places.above_mean = [&](PatchId patch, const Vec3& x) { return near.above_mean(patch, x); };
+  const GatherPattern pattern(test::gather_quality({16, 1024, 1024}, 0), 1);
+  const auto gather = [&](const Illumination& light, double y) {
+    unsigned long long rays = 0;
+    const Vec3 n{1, 0, 0}, p = Vec3{0, y, 0.01} - light.problem.patches.origin + n * light.problem.rays.lift();
+    return gather_point(light, p, n, pattern, GatherPlan{}, rays).E[0];
+  };
+  double off_by_means = 0, off_by_places = 0;
+  for (const double y : {0.35, 0.85, 1.45, 2.05, 2.65}) {
+    const double E_exact = gather(exact, y);
+    off_by_means += std::abs(gather(by_means, y) - E_exact), off_by_places += std::abs(gather(by_places, y) - E_exact);
+  }
+  EXPECT_LT(off_by_places, 0.3 * off_by_means);
 }
 
 }  // namespace

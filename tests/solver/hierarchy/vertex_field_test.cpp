@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/gather/gather_point.h"
+#include "solver/hierarchy/fine_radiosity.h"
 #include "solver/hierarchy/gradients.h"
 #include "solver/model/parallel.h"
 #include "tests/solver/hierarchy/field_scenes.h"
@@ -105,8 +106,12 @@ TEST(GatherField, IsTheSameForOneAndTwoThreads) {
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
     ElementMesh mesh(room.patches, room.map);
+    Field lit(room.patches.patch_count(), 1);
+    for (std::size_t i = 0; i < lit.size(); ++i) lit.set(i, Spectrum(5.0 + static_cast<double>(i % 3)));
+    const Field none(lit.size(), 1);
+    FineRadiosity fine(mesh, room.patches, lit, none);
     E[threads - 1] = gather_field(room.problem(), emission(room.patches), mesh,
-                                  {.tolerance = 0.1, .shortest_edge = 0.1, .quality = kFew})
+                                  {.tolerance = 0.1, .shortest_edge = 0.1, .quality = kFew}, {}, nullptr, {}, &fine)
                          .E.value;
   }
   set_thread_count(0);

@@ -27,7 +27,7 @@ namespace {
 //
 //   office, standard       128      4,458    4,530     19,554  11,673   483,584       47.6       50.8
 //   house, fine            603     10,708   10,934    212,764 119,564 1,251,611      138.3      148.1
-//   contacts, fine          72      6,068    5,986    134,540  69,830 1,744,385      101.1      112.8
+//   contacts, fine         144      6,068    5,986    134,540  69,830 1,744,385      101.1      112.8
 //
 // With layers, whose arrays live side by side only while elements are shown; without, and predicted, in brackets:
 //

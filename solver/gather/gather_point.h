@@ -52,11 +52,10 @@ inline DeltaEffort delta_effort(const GatherPattern& pattern) {
 /// bright area that it meets. Only what differs from the mean that the plan knows is left to chance: form factors times
 /// that mean are closed forms, so an even sky or bright area that nothing hides is exact. Other bright patches, glowing
 /// or lit, by shadow rays and by the bundle, weighted by the balance heuristic, and so are those that the plan's
-/// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land. Where the
-/// bundle is noisier than the quality allows, it is sent anew, with more rays where a pilot sees contrast: under a bed,
-/// in a gap.
-/// What less than one ray of the bundle finds seldom looks noisy: where it is all the light there is, E is low by a
-/// sixth in the mean, within a standard error as large as itself.
+/// mirrors show; the rest by the bundle, which looks up B (or the sky) where its rays land. Where the bundle
+/// is noisier than the quality allows, it is sent anew, with more rays where a pilot sees contrast: under a bed, in a
+/// gap. What less than one ray of the bundle finds seldom looks noisy: where it is all the light there is, E is low by
+/// a sixth in the mean, within a standard error as large as itself.
 ///
 /// light  made with the radiosity B of the patches.
 /// plan   from plan_gather() at this point or near it.

@@ -11,7 +11,7 @@
 namespace clerestory {
 namespace {
 
-// The figures of solver/hierarchy/README.md and tests/bench/history were measured with these rows.
+// What they reach is in tests/bench/README.md and docs/accuracy.md.
 
 constexpr Effort kDraft{
     .triangles_to_halve = 1400,

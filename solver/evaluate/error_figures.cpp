@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double kFewPoints = 8;
 constexpr double kNoChance = 2.5;  ///< standard errors: one part in eighty is taken for wrong that is not
+constexpr double kNoChanceAtAll =
+    4;  ///< where something else says that it is right: paths that seldom find the light scatter to one side
 
 /// Weighted means over comparisons.
 class Samples {
@@ -29,9 +32,9 @@ class Samples {
   }
   /// Whether the mean is not 0 by chance, and not by a hundredth of the points, or one, alone.
   template <class Of>
-  bool is_no_chance(const Of& of) const {
+  bool is_no_chance(const Of& of, double std_errors) const {
     const double m = mean(of);
-    if (!(std::abs(m) > kNoChance * std_error(of))) return false;
+    if (!(std::abs(m) > std_errors * std_error(of))) return false;
     std::vector<double> terms;
     for (const Comparison& s : samples_) terms.push_back(share(s) * of(s) / count() * (m > 0 ? 1 : -1));
     std::ranges::sort(terms, std::greater<>());
@@ -134,6 +137,17 @@ bool most_find_light(const Samples& samples) {
   return samples.mean([](const Comparison& c) { return c.r > 0 ? 1.0 : 0.0; }) > 0.5;
 }
 
+/// How far the light may be off in the mean [of level] for all that gathers and elements say of each other: the
+/// residual of the radiosity equation, times 1 / (1 - albedo); any amount where elements are not known.
+template <class Gathered>
+double largest_by_residual(const Samples& samples, const Gathered& gathered, double level) {
+  if (!samples.all([](const Comparison& c) { return c.element >= 0; })) return std::numeric_limits<double>::infinity();
+  const auto residual = [&](const Comparison& c) { return (gathered(c) - c.element - c.off_mean) / level; };
+  const double albedo = samples.mean([&](const Comparison& c) { return c.albedo * c.element; }) /
+                        std::max(samples.mean([](const Comparison& c) { return c.element; }), 1e-30 * level);
+  return (std::abs(samples.mean(residual)) + kConfidence * samples.std_error(residual)) / (1 - albedo);
+}
+
 ErrorFigures by_gathers(const Samples& samples) {
   const auto gathered = [](const Comparison& c) { return (c.gather + c.other_gather) / 2; };
   const double level = samples.mean(gathered);
@@ -143,7 +157,9 @@ ErrorFigures by_gathers(const Samples& samples) {
   const double ratio_error = kConfidence * std::max(samples.std_error(off), of_noise);
   // Where most paths find nothing, the few that do tell no mean.
   const bool paths_can_judge = most_find_light(samples);
-  const bool is_off = paths_can_judge && samples.is_no_chance(off);
+  const double by_residual = largest_by_residual(samples, gathered, level);
+  const double chance = std::abs(ratio) > by_residual ? kNoChanceAtAll : kNoChance;
+  const bool is_off = paths_can_judge && samples.is_no_chance(off, chance);
   const double factor = is_off ? std::max(1 + ratio, 0.01) : 1;
   const auto reference = [&](const Comparison& c) { return factor * gathered(c); };
   const auto product = [&](const Comparison& c) { return (c.x - factor * c.gather) * (c.x - factor * c.other_gather); };
@@ -159,13 +175,7 @@ ErrorFigures by_gathers(const Samples& samples) {
             0,
             paths_can_judge ? ratio_error : std::abs(ratio) + ratio_error};
   s.observed = samples.mean([&](const Comparison& c) { return squared(c.x - reference(c)); });
-  if (paths_can_judge && samples.all([](const Comparison& c) { return c.element >= 0; })) {
-    const auto residual = [&](const Comparison& c) { return (gathered(c) - c.element) / level; };
-    const double albedo = samples.mean([&](const Comparison& c) { return c.albedo * c.element; }) /
-                          std::max(samples.mean([](const Comparison& c) { return c.element; }), 1e-30 * level);
-    const double most = (std::abs(samples.mean(residual)) + kConfidence * samples.std_error(residual)) / (1 - albedo);
-    s.also = std::min(s.also, most);
-  }
+  if (paths_can_judge) s.also = std::min(s.also, by_residual);
   // Where gathers are wrong in some places only.
   const auto scatter = [&](const Comparison& c) { return squared(c.r - reference(c)) - squared(c.std_error); };
   // What a single bright path brings has a standard error like itself.

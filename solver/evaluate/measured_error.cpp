@@ -26,6 +26,8 @@ namespace clerestory {
 namespace {
 
 constexpr int kFewestPaths = 64;          ///< a point, for a standard error that means something
+constexpr double kLong = 200;             ///< rays of a path: each such path sees all of a room many times over ...
+constexpr int kFewestLongPaths = 16;      ///< ... so that these do
 constexpr int kPilotPaths = 8;            ///< at each of the fewest points, to learn how long paths are
 constexpr std::size_t kFewestPoints = 8;  ///< in rooms so bright that paths hardly end
 constexpr std::size_t kMostPoints = 1 << 12;
@@ -186,7 +188,8 @@ Compared compare(const Problem& whole, const std::vector<Comparison>& samples, c
   const double affordable =  // paths in all
       std::max(kShareOfRays * static_cast<double>(solution.rays), effort.rays) / rays_per_path;
   const double points = static_cast<double>(std::min(samples.size(), effort.points));
-  const int paths = std::clamp(static_cast<int>(affordable / points), kFewestPaths, effort.paths);
+  const int fewest = rays_per_path > kLong ? kFewestLongPaths : kFewestPaths;
+  const int paths = std::clamp(static_cast<int>(affordable / points), fewest, effort.paths);
   const auto wanted =
       effort.asked_points.value_or(std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));
   const auto count = std::min(samples.size(), wanted);
@@ -247,12 +250,16 @@ MeasuredError measure_error(const Problem& problem, const VertexLightmap& lightm
     const auto& [i, room, weight_of_room, u, v] = points[s];
     samples[s].part = room;
     samples[s].weight = weight_of_room;
-    samples[s].element = luminous_mean(solution.E[i]);
     samples[s].albedo = luminous_mean(patches.albedo(i));
     // The map is linear in the corners, so it interpolates their values as well as their positions.
     const auto weight = point_on_triangle({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, u, v);
-    for (int k = 0; k < 3; ++k)
-      samples[s].x += weight[k] * luminous_mean(lightmap.E[lightmap.corners[i][static_cast<std::size_t>(k)]]);
+    double mean = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double at_corner = luminous_mean(lightmap.E[lightmap.corners[i][static_cast<std::size_t>(k)]]);
+      samples[s].x += weight[k] * at_corner, mean += at_corner / 3;
+    }
+    samples[s].element = luminous_mean(solution.E[i]);
+    samples[s].off_mean = samples[s].x - mean;
     places[s] = {rays.off_surface(point_on_triangle(patches.corner_positions(PatchId{i}), u, v), patches.normal[i]),
                  patches.normal[i]};
   }

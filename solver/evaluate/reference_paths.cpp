@@ -11,8 +11,9 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kPoints = 16;
-constexpr int kPaths = 32;         // of each kind, at each point
+constexpr std::size_t kPoints = 16, kFirstPoints = 2;
+constexpr int kPaths = 32, kFirstPaths = 8;  // of each kind, at each point
+constexpr double kLong = 200;  // rays of a path: in a room so bright all paths find all light, and pilots take minutes
 constexpr double kMuchBetter = 4;  // variance for the same rays; a pilot knows it to a factor of two
 constexpr double kMissed = 0.2;    // of the light, in the mean of the points
 constexpr double kSure = 3;        // standard errors of that
@@ -23,15 +24,16 @@ struct Pilot {
   unsigned long long rays = 0;
 };
 
-Pilot pilot(const PathEstimator& estimator, std::size_t points, const PointOf& point_of, std::uint64_t key,
-            const Monitor& monitor) {
-  const std::size_t count = std::min(points, kPoints);
+/// At `most` of the points.
+Pilot pilot(const PathEstimator& estimator, std::size_t points, const PointOf& point_of, std::size_t most, int paths,
+            std::uint64_t key, const Monitor& monitor) {
+  const std::size_t count = std::min(points, most);
   Pilot found{std::vector<double>(count), std::vector<double>(count)};
   std::vector<unsigned long long> rays(count, 0);
   parallel_for(count, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       const auto [p, n] = point_of(k * points / count);
-      const auto [E, std_error] = trace_paths_at_point(estimator, p, n, stream_key(key, k), kPaths, rays[k], monitor);
+      const auto [E, std_error] = trace_paths_at_point(estimator, p, n, stream_key(key, k), paths, rays[k], monitor);
       found.E[k] = luminous_mean(E), found.variance[k] = luminous_mean(std_error) * luminous_mean(std_error);
     }
   });
@@ -69,9 +71,13 @@ ReferencePaths::ReferencePaths(const Illumination& light, std::size_t points, co
                                std::uint64_t key, const Monitor& monitor)
     : estimator_(light) {
   if (points == 0 || has_narrow_gloss(light.problem) || !light.problem.lights.caustics.sides.empty()) return;
+  const auto at = [&](const PathEstimator& estimator, std::size_t most, int paths, std::uint64_t set) {
+    return pilot(estimator, points, point_of, most, paths, stream_key(key, kErrorPilots, set), monitor);
+  };
+  const double first = static_cast<double>(at(estimator_, kFirstPoints, kFirstPaths, 2).rays);
+  if (first > kLong * kFirstPaths * static_cast<double>(std::min(points, kFirstPoints))) return;
   both_.emplace(light);
-  const Pilot one = pilot(estimator_, points, point_of, stream_key(key, kErrorPilots, 0), monitor),
-              two = pilot(both_->estimator(), points, point_of, stream_key(key, kErrorPilots, 1), monitor);
+  const Pilot one = at(estimator_, kPoints, kPaths, 0), two = at(both_->estimator(), kPoints, kPaths, 1);
   if (monitor.should_stop()) return;
   const PilotsCompared compared(one, two);
   if (compared.missed < -kSure * std::sqrt(compared.variance)) return;

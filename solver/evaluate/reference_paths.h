@@ -11,7 +11,8 @@ namespace clerestory {
 
 /// Whichever knows the points better for its rays, as pilots at some of them tell, which are used for nothing else:
 /// paths from both ends where those from points have four times their variance for the same rays, or miss much of their
-/// light. Narrow gloss that lamps or the sun shine on is for paths from points alone, which look for images in it.
+/// light. Where paths are so long that all find all light, they are from points. Narrow gloss that lamps or the sun
+/// shine on is for paths from points alone, which look for images in it.
 class ReferencePaths {
  public:
   /// light  outlives this.

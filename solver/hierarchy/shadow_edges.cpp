@@ -20,7 +20,13 @@ namespace {
 constexpr double kContrast = 0.35;  // of an element's irradiance: lights that give less draw no edge on it
 constexpr double kLongest = 0.5;    // of elements that are cut: their parts would be thin [m]
 constexpr double kLeastAngle = 0.6 * std::numbers::pi / 180;  // of parts, or half of the element's own
-constexpr int kMostRounds = 8;                                // of halving
+constexpr int kMostRounds = 12;                               // of halving
+/// Leaves are halved for a crooked edge down to this share of the shortest edge elsewhere: between two edges of a
+/// leg's shadow.
+constexpr double kCrooked = 0.25;
+/// Of an edge from its corner at the end of a penumbra: what is found there is that end once more.
+constexpr double kSameEnd = 0.1;
+constexpr int kMostCuts = 4;  // one upon the other, of one element: at two of its edges, along two ends
 /// Pairs of a light and an element that are asked whether one matters to the other: seconds of a core. Beyond, the
 /// lights of most power are.
 constexpr double kMostPairs = 1e8;
@@ -84,10 +90,10 @@ class Cutter {
   Cutter(ElementMesh& mesh, const SharpLight& light, const ShadowEdgeOptions& options)
       : mesh_(mesh), light_(light), options_(options) {}
 
-  /// Halves what is not straight; leaves that are stay in straight_.
+  /// Halves leaves in which the edge is not straight; those that it goes through stay in edged_.
   void look_at(std::vector<std::uint32_t> candidates, ShadowEdges& done, const Monitor& monitor) {
     for (int round = 0; !candidates.empty() && !monitor.should_stop(); ++round) {
-      std::vector<ShadowRun> runs(candidates.size(), ShadowRun::none);
+      std::vector<std::optional<ShadowRun>> runs(candidates.size());  // where there is an edge
       parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && !monitor.should_stop(); ++i) {
           const LeafInLight leaf_in_light(mesh_, candidates[i]);
@@ -99,22 +105,22 @@ class Cutter {
       std::vector<std::uint32_t> marked;
       for (std::size_t i = 0; i < candidates.size(); ++i) {
         const double longest = mesh_.longest_edge(candidates[i]);
-        const bool two_ends = runs[i] == ShadowRun::straight || runs[i] == ShadowRun::bent;
         const bool is_fit =
-            two_ends ? runs[i] == ShadowRun::straight && longest <= kLongest : runs[i] != ShadowRun::crooked;
-        const bool may_halve = longest >= 2 * options_.shortest_edge.of(mesh_.patches(), mesh_[candidates[i]].patch) &&
-                               round < kMostRounds && mesh_.leaf_count() + 4 * marked.size() < options_.most_elements;
+            !runs[i] || *runs[i] == ShadowRun::wide || (*runs[i] == ShadowRun::straight && longest <= kLongest);
+        const double shortest = kCrooked * options_.shortest_edge.of(mesh_.patches(), mesh_[candidates[i]].patch);
+        const bool may_halve = longest >= 2 * shortest && round < kMostRounds &&
+                               mesh_.leaf_count() + 4 * marked.size() < options_.most_elements;
         if (!is_fit && may_halve)
           marked.push_back(candidates[i]);
         else
-          (two_ends ? straight_ : others_).push_back(candidates[i]);
+          (runs[i] ? edged_ : others_).push_back(candidates[i]);
       }
       done.halved += marked.size();
       mesh_.split(marked);
       // Those halved, and those that conformity halved with them: their parts are looked at anew.
       candidates.clear();
       for (const std::uint32_t e : marked) add_leaves_under(mesh_, e, candidates);
-      for (auto* kept : {&straight_, &others_})
+      for (auto* kept : {&edged_, &others_})
         std::erase_if(*kept, [&](std::uint32_t e) {
           if (!mesh_[e].is_leaf()) add_leaves_under(mesh_, e, candidates);
           return !mesh_[e].is_leaf();
@@ -124,20 +130,22 @@ class Cutter {
 
   /// Along one end of the penumbra after the other; in between, the mesh conforms.
   void cut(ShadowEdges& done, const Monitor& monitor) {
-    done.cut += straight_.size();
     take_what_touches();
     for (const PenumbraEnd end : {PenumbraEnd::dark, PenumbraEnd::lit}) {
       known_.clear();
-      for (const std::uint32_t e : straight_)
-        if (!monitor.should_stop()) cut_leaves_under(e, end);
+      for (const std::uint32_t e : edged_)
+        if (!monitor.should_stop()) cut_leaves_under(e, end, 0);
     }
-    for (const std::uint32_t e : straight_) mark_leaves_under(e);
+    for (const std::uint32_t e : edged_) {
+      done.cut += !mesh_[e].is_leaf();
+      mark_leaves_under(e);
+    }
   }
 
  private:
   /// Beside a corner within the penumbra lie leaves that only one end of it crosses.
   void take_what_touches() {
-    for (const std::uint32_t e : straight_) {
+    for (const std::uint32_t e : edged_) {
       const LeafInLight leaf_in_light(mesh_, e);
       const auto points = mesh_.points_of(e);
       for (std::size_t k = 0; k < 3; ++k)
@@ -145,27 +153,29 @@ class Cutter {
     }
     for (const std::uint32_t e : others_) {
       const auto points = mesh_.points_of(e);
-      if (std::ranges::any_of(points, [&](std::uint32_t p) { return within_[p]; })) straight_.push_back(e);
+      if (std::ranges::any_of(points, [&](std::uint32_t p) { return within_[p]; })) edged_.push_back(e);
     }
   }
 
   PointSet& at(PenumbraEnd end) { return at_end_[static_cast<std::size_t>(end)]; }
 
-  void cut_leaves_under(std::uint32_t e, PenumbraEnd end) {
-    if (mesh_[e].is_leaf() && (mesh_.leaf_count() >= options_.most_elements || !cut_leaf(e, end))) return;
-    cut_leaves_under(mesh_[e].first, end);
-    cut_leaves_under(mesh_[e].first + 1, end);
+  /// cuts: that made this element of the one that an edge goes through. Many edges of shadows may run into each other.
+  void cut_leaves_under(std::uint32_t e, PenumbraEnd end, int cuts) {
+    if (mesh_[e].is_leaf() && (cuts >= kMostCuts || mesh_.leaf_count() >= options_.most_elements || !cut_leaf(e, end)))
+      return;
+    cut_leaves_under(mesh_[e].first, end, cuts + 1);
+    cut_leaves_under(mesh_[e].first + 1, end, cuts + 1);
   }
 
-  /// At the first of its edges that the end of the penumbra crosses; false where there is none. An edge with a corner
-  /// at that end is not crossed by it once more.
+  /// At the first of its edges that the end of the penumbra crosses; false where there is none. Near a corner that is
+  /// at that end already it does not cross once more; farther from it another edge does.
   bool cut_leaf(std::uint32_t leaf, PenumbraEnd end) {
     const LeafInLight leaf_in_light(mesh_, leaf);
     std::optional<ShadowOutline> seen;
     const auto points = mesh_.points_of(leaf);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = points[k], b = points[(k + 1) % 3];
-      if (at(end)[a] || at(end)[b]) continue;
+      if (at(end)[a] && at(end)[b]) continue;
       auto [known, is_new] = known_.try_emplace(std::pair{std::min(a, b), std::max(a, b)});
       if (is_new) {
         if (!seen) seen = shadow_outline(light_, leaf_in_light);
@@ -174,6 +184,7 @@ class Cutter {
       }
       if (!known->second) continue;
       const double t = a < b ? *known->second : 1 - *known->second;
+      if ((at(end)[a] && t < kSameEnd) || (at(end)[b] && t > 1 - kSameEnd)) continue;
       const double near = narrowest_penumbra(leaf_in_light.length_of(k)) / 2;
       if (t < near || t > 1 - near) {
         at(end).set(t < near ? a : b);
@@ -205,7 +216,7 @@ class Cutter {
   ElementMesh& mesh_;
   const SharpLight& light_;
   const ShadowEdgeOptions& options_;
-  std::vector<std::uint32_t> straight_, others_;
+  std::vector<std::uint32_t> edged_, others_;
   PointSet within_;                                                                 ///< the penumbra
   std::array<PointSet, 2> at_end_;                                                  ///< of it
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<double>> known_;  ///< by ends of an edge, lower first

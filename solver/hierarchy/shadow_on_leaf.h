@@ -36,7 +36,7 @@ class LeafInLight {
 /// Where the light's centre comes or goes along the edges of a leaf: bit k of `lit`: corner k sees it; of the points
 /// between corners bits 3 + kInner * edge ...
 struct ShadowOutline {
-  static constexpr int kInner = 3;  ///< points of an edge looked at between its corners
+  static constexpr int kInner = 4;  ///< points of an edge looked at between its corners
 
   std::uint16_t lit = 0;
 

@@ -35,7 +35,7 @@ constexpr Effort kDraft{
     .paths = 64,
     .paths_of_sensor = 256,
     .particles = 100,
-    .error = {.points = 64, .paths = 256, .rays = 6e4, .gather = {{8, 128, 128}, {0, 2, 0.02, 256}, 32, 16}},
+    .error = {.points = 64, .paths = 256, .rays = 6e4, .gather = {{8, 128, 1024}, {0, 2, 0.02, 256}, 32, 16, 0.07}},
     .year = {145, 12, 0, 8, 12, 128, 64},
 };
 
@@ -62,7 +62,7 @@ constexpr Effort kStandard{
     .paths = 256,
     .paths_of_sensor = 1024,
     .particles = 400,
-    .error = {.points = 256, .paths = 128, .rays = 1.5e5, .gather = {{16, 256, 256}, {1, 3, 0.01, 512}, 32, 16}},
+    .error = {.points = 256, .paths = 128, .rays = 1.5e5, .gather = {{16, 256, 2048}, {1, 3, 0.01, 512}, 32, 16, 0.04}},
     .year = {577, 8, 64, 16, 16, 256, 256},
 };
 
@@ -102,7 +102,7 @@ constexpr Effort kFine{
     .paths = 1024,
     .paths_of_sensor = 4096,
     .particles = 1600,
-    .error = {.points = 512, .paths = 512, .rays = 1e6, .gather = {{16, 256, 512}, {1, 3, 0.01, 512}, 64, 32}},
+    .error = {.points = 512, .paths = 512, .rays = 1e6, .gather = {{16, 256, 4096}, {1, 3, 0.01, 512}, 64, 32, 0.03}},
     .year = {2305, 5, 256, 32, 24, 512, 1024},
 };
 

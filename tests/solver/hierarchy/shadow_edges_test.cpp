@@ -56,13 +56,14 @@ SceneMaker in_the_sun() {
   return maker;
 }
 
-TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
-  Floor floor(in_the_sun());
-  const double area = floor.room.patches.total_area();
-  ASSERT_GT(floor.cut().cut, 20u);
+/// Areas of the floor [m2]: what is in the dark, across an edge, and neither lit nor dark as a whole.
+struct FloorParts {
+  double dark = 0, penumbra = 0, mixed = 0;
+};
+FloorParts parts_of(const Floor& floor) {
   const Problem problem = floor.room.problem();
   const SharpLight sun = sharp_lights(problem, 1).at(0);
-  double dark = 0, penumbra = 0, mixed = 0;
+  FloorParts parts;
   for (const std::uint32_t leaf : floor.mesh.leaves()) {
     if (!floor.is_floor(leaf)) continue;
     const auto x = floor.mesh.corner_positions(leaf);
@@ -72,12 +73,20 @@ TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
       lit += sun.sees_centre(point_on_triangle(x, u[0], u[1]), {0, 0, 1});
     }
     if (floor.mesh[leaf].penumbra)
-      penumbra += floor.mesh[leaf].area;
+      parts.penumbra += floor.mesh[leaf].area;
     else if (lit > 0 && lit < 32)
-      mixed += floor.mesh[leaf].area;
+      parts.mixed += floor.mesh[leaf].area;
     else if (lit == 0)
-      dark += floor.mesh[leaf].area;
+      parts.dark += floor.mesh[leaf].area;
   }
+  return parts;
+}
+
+TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
+  Floor floor(in_the_sun());
+  const double area = floor.room.patches.total_area();
+  ASSERT_GT(floor.cut().cut, 20u);
+  const auto [dark, penumbra, mixed] = parts_of(floor);
   // Around the shadow of a plate at height h the penumbra is the sun's diameter h wide, and half of it is dark.
   const double width = kHeight / kToSun.z * 0.533 * std::numbers::pi / 180, rim = 2 * (1.2 + 1.0);
   EXPECT_NEAR(penumbra, width * rim, 0.35 * width * rim);
@@ -86,6 +95,26 @@ TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
   double sum = 0;
   for (const std::uint32_t leaf : floor.mesh.leaves()) sum += floor.mesh[leaf].area;
   EXPECT_NEAR(sum, area, 1e-9 * area);
+}
+
+TEST(ShadowEdges, OfPostsThinnerThanElementsRunOnIntoThoseOfPlates) {
+  SceneMaker maker = in_the_sun();
+  constexpr double kPost = 0.05;
+  for (const double x :
+       {-0.9, 0.35, 0.8}) {  // from the floor to the plate's height: two of their shadows end in its own
+    const Vec3 low{x, -0.9, 0}, side{kPost, 0, 0}, deep{0, kPost, 0}, up{0, 0, kHeight};
+    for (const auto& [from, to] : {std::pair{low, low + side},
+                                   {low + side, low + side + deep},
+                                   {low + side + deep, low + deep},
+                                   {low + deep, low}})
+      maker.polygon({from, to, to + up, from + up});
+  }
+  Floor floor(maker);
+  ASSERT_GT(floor.cut().cut, 100u);
+  const auto [dark, penumbra, mixed] = parts_of(floor);
+  EXPECT_GT(dark, kShadow + 0.02);
+  EXPECT_LT(mixed, 0.004);  // of three strips of 2.5 m2 / 100
+  EXPECT_TRUE(floor.mesh.is_sound());
 }
 
 TEST(ShadowEdges, OfOneOfSeveralTimesAreThoseOfThatTime) {

@@ -90,7 +90,7 @@ class Cutter {
   Cutter(ElementMesh& mesh, const SharpLight& light, const ShadowEdgeOptions& options)
       : mesh_(mesh), light_(light), options_(options) {}
 
-  /// Halves leaves in which the edge is not straight; those that it goes through stay in edged_.
+  /// Halves leaves in which the edge is not straight, as far as may be.
   void look_at(std::vector<std::uint32_t> candidates, ShadowEdges& done, const Monitor& monitor) {
     for (int round = 0; !candidates.empty() && !monitor.should_stop(); ++round) {
       std::vector<std::optional<ShadowRun>> runs(candidates.size());  // where there is an edge
@@ -113,14 +113,17 @@ class Cutter {
         if (!is_fit && may_halve)
           marked.push_back(candidates[i]);
         else
-          (runs[i] ? edged_ : others_).push_back(candidates[i]);
+          (!runs[i]                                                         ? others_
+           : *runs[i] == ShadowRun::straight || *runs[i] == ShadowRun::bent ? edged_
+                                                                            : crooked_)
+              .push_back(candidates[i]);
       }
       done.halved += marked.size();
       mesh_.split(marked);
       // Those halved, and those that conformity halved with them: their parts are looked at anew.
       candidates.clear();
       for (const std::uint32_t e : marked) add_leaves_under(mesh_, e, candidates);
-      for (auto* kept : {&edged_, &others_})
+      for (auto* kept : {&edged_, &crooked_, &others_})
         std::erase_if(*kept, [&](std::uint32_t e) {
           if (!mesh_[e].is_leaf()) add_leaves_under(mesh_, e, candidates);
           return !mesh_[e].is_leaf();
@@ -133,24 +136,28 @@ class Cutter {
     take_what_touches();
     for (const PenumbraEnd end : {PenumbraEnd::dark, PenumbraEnd::lit}) {
       known_.clear();
-      for (const std::uint32_t e : edged_)
-        if (!monitor.should_stop()) cut_leaves_under(e, end, 0);
+      for (const auto* leaves : {&edged_, &crooked_})
+        for (const std::uint32_t e : *leaves)
+          if (!monitor.should_stop()) cut_leaves_under(e, end, 0);
     }
-    for (const std::uint32_t e : edged_) {
-      done.cut += !mesh_[e].is_leaf();
-      mark_leaves_under(e);
-    }
+    for (const auto* leaves : {&edged_, &crooked_})
+      for (const std::uint32_t e : *leaves) done.cut += !mesh_[e].is_leaf();
+    // In crooked ones the penumbrae of two edges may overlap: light does not fall evenly from corners within them.
+    for (const std::uint32_t e : edged_) mark_leaves_under(e, false);
+    for (const std::uint32_t e : crooked_) mark_leaves_under(e, true);
   }
 
  private:
   /// Beside a corner within the penumbra lie leaves that only one end of it crosses.
   void take_what_touches() {
-    for (const std::uint32_t e : edged_) {
-      const LeafInLight leaf_in_light(mesh_, e);
-      const auto points = mesh_.points_of(e);
-      for (std::size_t k = 0; k < 3; ++k)
-        if (light_.seen(leaf_in_light.on_edge(k, 0), leaf_in_light.normal()) == LightSeen::part) within_.set(points[k]);
-    }
+    for (const auto* leaves : {&edged_, &crooked_})
+      for (const std::uint32_t e : *leaves) {
+        const LeafInLight leaf_in_light(mesh_, e);
+        const auto points = mesh_.points_of(e);
+        for (std::size_t k = 0; k < 3; ++k)
+          if (light_.seen(leaf_in_light.on_edge(k, 0), leaf_in_light.normal()) == LightSeen::part)
+            within_.set(points[k]);
+      }
     for (const std::uint32_t e : others_) {
       const auto points = mesh_.points_of(e);
       if (std::ranges::any_of(points, [&](std::uint32_t p) { return within_[p]; })) edged_.push_back(e);
@@ -199,10 +206,11 @@ class Cutter {
     return false;
   }
 
-  void mark_leaves_under(std::uint32_t e) {
+  /// from_end_to_end: those alone that reach from the dark end of a penumbra to the lit one.
+  void mark_leaves_under(std::uint32_t e, bool from_end_to_end) {
     if (!mesh_[e].is_leaf()) {
-      mark_leaves_under(mesh_[e].first);
-      mark_leaves_under(mesh_[e].first + 1);
+      mark_leaves_under(mesh_[e].first, from_end_to_end);
+      mark_leaves_under(mesh_[e].first + 1, from_end_to_end);
       return;
     }
     int dark = 0, lit = 0;
@@ -210,15 +218,16 @@ class Cutter {
       if (!at(PenumbraEnd::dark)[p] && !at(PenumbraEnd::lit)[p] && !within_[p]) return;
       dark += at(PenumbraEnd::dark)[p], lit += at(PenumbraEnd::lit)[p];
     }
+    if (from_end_to_end && (dark == 0 || lit == 0)) return;
     if (dark < 3 && lit < 3) mesh_.mark_penumbra(e);
   }
 
   ElementMesh& mesh_;
   const SharpLight& light_;
   const ShadowEdgeOptions& options_;
-  std::vector<std::uint32_t> edged_, others_;
-  PointSet within_;                                                                 ///< the penumbra
-  std::array<PointSet, 2> at_end_;                                                  ///< of it
+  std::vector<std::uint32_t> edged_, crooked_, others_;  ///< with a straight edge, or bent; with another; with none
+  PointSet within_;                                      ///< the penumbra
+  std::array<PointSet, 2> at_end_;                       ///< of it
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<double>> known_;  ///< by ends of an edge, lower first
 };
 

@@ -113,7 +113,8 @@ TEST(ShadowEdges, OfPostsThinnerThanElementsRunOnIntoThoseOfPlates) {
   ASSERT_GT(floor.cut().cut, 100u);
   const auto [dark, penumbra, mixed] = parts_of(floor);
   EXPECT_GT(dark, kShadow + 0.02);
-  EXPECT_LT(mixed, 0.007);  // where the penumbrae of a post's two edges meet; 0.012 with elements no smaller than others
+  EXPECT_LT(mixed,
+            0.007);  // where the penumbrae of a post's two edges meet; 0.012 with elements no smaller than others
   EXPECT_TRUE(floor.mesh.is_sound());
 }
 

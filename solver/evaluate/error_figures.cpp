@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kFewPoints = 8;
 constexpr double kNoChance = 2.5;  ///< standard errors: one part in eighty is taken for wrong that is not
-constexpr double kNoChanceAtAll =
-    4;  ///< where something else says that it is right: paths that seldom find the light scatter to one side
+/// The same where the residual says that it is right: paths that seldom find the light scatter to one side.
+constexpr double kNoChanceAtAll = 4;
 
 /// Weighted means over comparisons.
 class Samples {

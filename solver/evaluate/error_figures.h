@@ -37,12 +37,11 @@ struct Comparison {
 /// With gathers: these have little noise, and two of them leave none in the mean of (x - g1)(x - g2). What they have in
 /// common with the result is its radiosity. Where that is wrong, gathers and elements disagree in the mean, and the
 /// error is as much times 1 / (1 - albedo): the residual of the radiosity equation. (How the result varies within
-/// elements is nothing in the mean, and taken out.) And paths judge it: by the ratio of
-/// all of them to all gathers, which corrects the gathers where it is no chance (and the less readily where it is more
-/// than the residual leaves possible), and by how much more they scatter
-/// around these than their own noise allows. The smaller of what ratio and residual leave possible is in the
-/// confidence. Where most paths find no light, as in a room lit through a crack, they correct nothing, and how far off
-/// they are is in the confidence.
+/// elements is nothing in the mean, and taken out.) And paths judge it: by the ratio of all of them to all gathers,
+/// which corrects the gathers where it is no chance (and the less readily where it is more than the residual leaves
+/// possible), and by how much more they scatter around these than their own noise allows. The smaller of what ratio and
+/// residual leave possible is in the confidence. Where most paths find no light, as in a room lit through a crack, they
+/// correct nothing, and how far off they are is in the confidence.
 ///
 /// Where paths have less noise than gathers, as where much light is straight from lamps and there are many of them,
 /// they are alone.

@@ -26,8 +26,7 @@ namespace clerestory {
 namespace {
 
 constexpr int kFewestPaths = 64;          ///< a point, for a standard error that means something
-constexpr double kLong = 200;             ///< rays of a path: each such path sees all of a room many times over ...
-constexpr int kFewestLongPaths = 16;      ///< ... so that these do
+constexpr int kFewestLongPaths = 16;      ///< of those that each see all of a room many times over
 constexpr int kPilotPaths = 8;            ///< at each of the fewest points, to learn how long paths are
 constexpr std::size_t kFewestPoints = 8;  ///< in rooms so bright that paths hardly end
 constexpr std::size_t kMostPoints = 1 << 12;
@@ -188,7 +187,7 @@ Compared compare(const Problem& whole, const std::vector<Comparison>& samples, c
   const double affordable =  // paths in all
       std::max(kShareOfRays * static_cast<double>(solution.rays), effort.rays) / rays_per_path;
   const double points = static_cast<double>(std::min(samples.size(), effort.points));
-  const int fewest = rays_per_path > kLong ? kFewestLongPaths : kFewestPaths;
+  const int fewest = rays_per_path > kLongPath ? kFewestLongPaths : kFewestPaths;
   const int paths = std::clamp(static_cast<int>(affordable / points), fewest, effort.paths);
   const auto wanted =
       effort.asked_points.value_or(std::max(kFewestPoints, static_cast<std::size_t>(affordable / paths)));

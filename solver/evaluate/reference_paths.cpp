@@ -13,11 +13,10 @@ namespace {
 
 constexpr std::size_t kPoints = 16, kFirstPoints = 2;
 constexpr int kPaths = 32, kFirstPaths = 8;  // of each kind, at each point
-constexpr double kLong = 200;  // rays of a path: in a room so bright all paths find all light, and pilots take minutes
-constexpr double kMuchBetter = 4;  // variance for the same rays; a pilot knows it to a factor of two
-constexpr double kMissed = 0.2;    // of the light, in the mean of the points
-constexpr double kSure = 3;        // standard errors of that
-constexpr double kNarrow = 1000;   // exponent of lobes that particles meet by chance only
+constexpr double kMuchBetter = 4;            // variance for the same rays; a pilot knows it to a factor of two
+constexpr double kMissed = 0.2;              // of the light, in the mean of the points
+constexpr double kSure = 3;                  // standard errors of that
+constexpr double kNarrow = 1000;             // exponent of lobes that particles meet by chance only
 
 struct Pilot {
   std::vector<double> E, variance;  ///< by point, luminous means
@@ -75,7 +74,7 @@ ReferencePaths::ReferencePaths(const Illumination& light, std::size_t points, co
     return pilot(estimator, points, point_of, most, paths, stream_key(key, kErrorPilots, set), monitor);
   };
   const double first = static_cast<double>(at(estimator_, kFirstPoints, kFirstPaths, 2).rays);
-  if (first > kLong * kFirstPaths * static_cast<double>(std::min(points, kFirstPoints))) return;
+  if (first > kLongPath * kFirstPaths * static_cast<double>(std::min(points, kFirstPoints))) return;
   both_.emplace(light);
   const Pilot one = at(estimator_, kPoints, kPaths, 0), two = at(both_->estimator(), kPoints, kPaths, 1);
   if (monitor.should_stop()) return;

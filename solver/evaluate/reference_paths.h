@@ -9,6 +9,9 @@
 
 namespace clerestory {
 
+/// Rays of a path beyond which all find all light of so bright a room, and a few tell as much as many.
+inline constexpr double kLongPath = 200;
+
 /// Whichever knows the points better for its rays, as pilots at some of them tell, which are used for nothing else:
 /// paths from both ends where those from points have four times their variance for the same rays, or miss much of their
 /// light. Where paths are so long that all find all light, they are from points. Narrow gloss that lamps or the sun

@@ -26,7 +26,8 @@ constexpr int kMostRounds = 12;                               // of halving
 constexpr double kCrooked = 0.25;
 /// Of an edge from its corner at the end of a penumbra: what is found there is that end once more.
 constexpr double kSameEnd = 0.1;
-constexpr int kMostCuts = 4;  // one upon the other, of one element: at two of its edges, along two ends
+/// One upon the other, of one element and along one end: some shadows run into each other without end.
+constexpr int kMostCuts = 8;
 /// Pairs of a light and an element that are asked whether one matters to the other: seconds of a core. Beyond, the
 /// lights of most power are.
 constexpr double kMostPairs = 1e8;
@@ -113,10 +114,7 @@ class Cutter {
         if (!is_fit && may_halve)
           marked.push_back(candidates[i]);
         else
-          (!runs[i]                                                         ? others_
-           : *runs[i] == ShadowRun::straight || *runs[i] == ShadowRun::bent ? edged_
-                                                                            : crooked_)
-              .push_back(candidates[i]);
+          leaves_with(runs[i]).push_back(candidates[i]);
       }
       done.halved += marked.size();
       mesh_.split(marked);
@@ -148,6 +146,11 @@ class Cutter {
   }
 
  private:
+  std::vector<std::uint32_t>& leaves_with(const std::optional<ShadowRun>& run) {
+    if (!run) return others_;
+    return *run == ShadowRun::straight || *run == ShadowRun::bent ? edged_ : crooked_;
+  }
+
   /// Beside a corner within the penumbra lie leaves that only one end of it crosses.
   void take_what_touches() {
     for (const auto* leaves : {&edged_, &crooked_})
@@ -166,7 +169,7 @@ class Cutter {
 
   PointSet& at(PenumbraEnd end) { return at_end_[static_cast<std::size_t>(end)]; }
 
-  /// cuts: that made this element of the one that an edge goes through. Many edges of shadows may run into each other.
+  /// cuts: that made this element of the one that an edge goes through.
   void cut_leaves_under(std::uint32_t e, PenumbraEnd end, int cuts) {
     if (mesh_[e].is_leaf() && (cuts >= kMostCuts || mesh_.leaf_count() >= options_.most_elements || !cut_leaf(e, end)))
       return;

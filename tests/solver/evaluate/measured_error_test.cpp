@@ -188,11 +188,45 @@ TEST(ErrorFigures, OfOnePointAreNeverNothing) {
   EXPECT_GT(summarise(traced).upper(), 0.3 / 10);
 }
 
+/// Fifty points of a result that is right and varies by `varies` within elements; paths say `off` less, each +-
+/// scatter. has_elements: those say that it is right.
+ErrorFigures told_of_right_one(double off, double scatter, double varies, bool has_elements, bool knows_variation) {
+  std::vector<Comparison> at;
+  for (int k = 0; k < 50; ++k) {
+    const double within = k % 2 ? varies : -varies, noise = k % 4 < 2 ? scatter : -scatter;
+    const double gather = 1 + within + (k % 3 - 1) * 0.002;
+    at.push_back({.x = 1 + within,
+                  .r = 1 + within - off + noise,
+                  .std_error = scatter,
+                  .gather = gather,
+                  .other_gather = 2 * (1 + within) - gather,
+                  .element = has_elements ? 1.0 : -1.0,
+                  .off_mean = knows_variation ? within : 0,
+                  .albedo = 0.5});
+  }
+  return summarise(at);
+}
+
+TEST(ErrorFigures, PathsAreTakenForChanceWhereTheResidualContradictsThem) {
+  // Ten per cent, which is three standard errors.
+  const double off = 0.1, three = off * std::sqrt(50) / 3, six = off * std::sqrt(50) / 6;
+  EXPECT_LT(told_of_right_one(off, three, 0.3, true, true).upper(), 0.02);
+  EXPECT_NEAR(told_of_right_one(off, three, 0.3, false, false).rms_relative, off, 0.02);
+  // What varies within elements would hide what they know.
+  EXPECT_GT(told_of_right_one(off, three, 0.3, true, false).upper(), 0.05);
+  // And no chance is that.
+  EXPECT_NEAR(told_of_right_one(off, six, 0.3, true, true).rms_relative, off, 0.02);
+}
+
 TEST(ReferencePaths, AreFromBothEndsWhereThoseFromPointsFindTheLightByChance) {
   // A lamp without size in the middle of a room, and one near the ceiling with a plate 2 cm below it, so that all light
-  // comes off the ceiling.
-  for (const bool has_plate : {false, true}) {
-    test::PatchBuilder b(0.6);
+  // comes off the ceiling. In a white room all paths find it, and are long.
+  struct Room {
+    bool has_plate;
+    double rho;
+  };
+  for (const auto [has_plate, rho] : {Room{false, 0.6}, Room{true, 0.6}, Room{true, 0.9995}}) {
+    test::PatchBuilder b(rho);
     b.box({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2.5}, {4, 3, 3}, true);
     if (has_plate)
       b.rectangle({1.8, 1.3, 2.46}, {0.4, 0, 0}, {0, 0.4, 0}).rectangle({1.8, 1.3, 2.46}, {0, 0.4, 0}, {0.4, 0, 0});
@@ -206,7 +240,7 @@ TEST(ReferencePaths, AreFromBothEndsWhereThoseFromPointsFindTheLightByChance) {
                                  return ReceivingPoint{{0.1 + 3.8 * u[0], 0.1 + 2.8 * u[1], 1e-4}, {0, 0, 1}};
                                },
                                1, {});
-    EXPECT_EQ(paths.are_from_both_ends(), has_plate);
+    EXPECT_EQ(paths.are_from_both_ends(), has_plate && rho < 0.9) << rho;
   }
 }
 

@@ -100,8 +100,8 @@ TEST(ShadowEdges, PartTheFloorIntoLightAndDarkWithThePenumbraBetween) {
 TEST(ShadowEdges, OfPostsThinnerThanElementsRunOnIntoThoseOfPlates) {
   SceneMaker maker = in_the_sun();
   constexpr double kPost = 0.05;
-  for (const double x :
-       {-0.9, 0.35, 0.8}) {  // from the floor to the plate's height: two of their shadows end in its own
+  // From the floor to the plate's height: two of their shadows end in its own.
+  for (const double x : {-0.9, 0.35, 0.8}) {
     const Vec3 low{x, -0.9, 0}, side{kPost, 0, 0}, deep{0, kPost, 0}, up{0, 0, kHeight};
     for (const auto& [from, to] : {std::pair{low, low + side},
                                    {low + side, low + side + deep},
@@ -113,8 +113,8 @@ TEST(ShadowEdges, OfPostsThinnerThanElementsRunOnIntoThoseOfPlates) {
   ASSERT_GT(floor.cut().cut, 100u);
   const auto [dark, penumbra, mixed] = parts_of(floor);
   EXPECT_GT(dark, kShadow + 0.02);
-  EXPECT_LT(mixed,
-            0.007);  // where the penumbrae of a post's two edges meet; 0.012 with elements no smaller than others
+  // Where the penumbrae of a post's two edges meet; 0.012 with elements no smaller than others.
+  EXPECT_LT(mixed, 0.007);
   EXPECT_TRUE(floor.mesh.is_sound());
 }
 

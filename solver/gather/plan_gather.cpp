@@ -136,7 +136,8 @@ std::vector<std::uint32_t> openings_worth_looking(const Illumination& light, con
   light.problem.rays.first_hits(light.problem.patches, pilots, met);
   rays += 16;
   if (sees_much_sky(met)) return {};
-  return areas_over(openings, p, frame.n, kMostOpenings, 0);
+  return areas_in_view(
+      light.problem.rays, openings, p, frame.n, [&](std::uint32_t) { return p; }, {kMostOpenings, kWorthAShare}, rays);
 }
 
 /// What pilot rays of the bundle find in each stratum; 0 where they belong to an opening or a bright area.
@@ -247,7 +248,9 @@ GatherPlan plan_gather(const Illumination& light, const Vec3& p, const Vec3& n, 
     owners.openings.push_back(k);
     if (!look_at(openings[k], k, plan.openings, plan.opening_plans)) owners.openings.pop_back();
   }
-  for (const std::uint32_t k : areas_over(light.bright_areas.shape, p, n, kMostBrightAreas, kLeastOfBest)) {
+  for (const std::uint32_t k : areas_in_view(
+           light.problem.rays, light.bright_areas.shape, p, n, [&](std::uint32_t) { return p; },
+           {kMostBrightAreas, kLeastOfBest}, rays)) {
     owners.bright_areas.push_back(k);
     look_at(light.bright_areas.shape[k], kBrightAreas + k, plan.bright_areas, plan.bright_area_plans);
   }

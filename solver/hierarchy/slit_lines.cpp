@@ -69,9 +69,9 @@ std::vector<std::uint32_t> SlitLines::slits_over(const ReceiverArea& area) const
   if (slits_.empty() || area.hands_down()) return {};
   std::vector<std::uint32_t> over;
   for (const ReceiverArea::Member& m : area.members())
-    for (const std::uint32_t k :
-         areas_over(slits_, (m.corners[0] + m.corners[1] + m.corners[2]) / 3, m.normal, kMostSlits, 0))
-      over.push_back(number_[k]);
+    for (const AreaOver& slit :
+         areas_over(slits_, (m.corners[0] + m.corners[1] + m.corners[2]) / 3, m.normal, kMostSlits))
+      over.push_back(number_[slit.number]);
   std::sort(over.begin(), over.end());
   over.erase(std::unique(over.begin(), over.end()), over.end());
   return over;

@@ -36,6 +36,7 @@ class Patch {
 
   const std::array<Vec3, 3>& corners() const { return corners_; }
   const Vec3& normal() const { return normal_; }
+  Vec3 point(double u, double v) const { return problem_.rays.off_surface(point_on_triangle(corners_, u, v), normal_); }
   Vec3 centre() const { return (corners_[0] + corners_[1] + corners_[2]) / 3; }
   double radius() const {
     double farthest = 0;
@@ -70,21 +71,28 @@ class Patch {
   }
 
  private:
-  Vec3 point(double u, double v) const { return problem_.rays.off_surface(point_on_triangle(corners_, u, v), normal_); }
-
   const Problem& problem_;
   Vec3 normal_;
   std::array<Vec3, 3> corners_;
 };
 
 /// In the order of their numbers.
-std::vector<std::uint32_t> openings_over(std::span<const LightArea> openings, const Patch& patch) {
-  std::vector<std::uint32_t> over = areas_over(openings, patch.centre(), patch.normal(), kMostOpenings, kLeastOfBest);
+std::vector<std::uint32_t> openings_over(const RayScene& rays, std::span<const LightArea> openings, const Patch& patch,
+                                         std::uint64_t key) {
+  const auto from = [&](std::uint32_t k) {
+    const auto u = sobol4(k, key);
+    return patch.point(u[0], u[1]);
+  };
+  unsigned long long sent = 0;
+  const auto in_view = [&](const Vec3& p, const AreasWanted& wanted) {
+    return areas_in_view(rays, openings, p, patch.normal(), from, wanted, sent);
+  };
+  std::vector<std::uint32_t> over = in_view(patch.centre(), {kMostOpenings, kLeastOfBest});
   double nearest = std::numeric_limits<double>::infinity();
   for (const LightArea& o : openings) nearest = std::min(nearest, length(o.centre - patch.centre()) - o.radius);
   if (patch.radius() < kSmall * nearest) return over;
   for (const Vec3& corner : patch.corners())  // all of a patch may see of it is from one corner
-    for (const std::uint32_t k : areas_over(openings, corner, patch.normal(), 1, 0)) over.push_back(k);
+    for (const std::uint32_t k : in_view(corner, {1, 0})) over.push_back(k);
   std::sort(over.begin(), over.end());
   over.erase(std::unique(over.begin(), over.end()), over.end());
   return over;
@@ -99,7 +107,7 @@ Spectrum sky_through_openings(const Illumination& light, std::size_t i, std::uin
   const Patch patch(problem, i);
   looked_at.clear();
   if (openings.empty() || patch.sees_much_sky(mix_bits(key + 1))) return Spectrum(0.0);
-  const std::vector<std::uint32_t> over = openings_over(openings, patch);
+  const std::vector<std::uint32_t> over = openings_over(problem.rays, openings, patch, mix_bits(key + 2));
 
   // Calls found(direction to the sky, weight) for each of the rays that leave by this opening and by none before it.
   const auto look = [&](std::uint32_t number, std::uint64_t stream, std::uint32_t count, bool roughly,

@@ -8,16 +8,6 @@
 namespace clerestory {
 namespace {
 
-struct Box {
-  Vec3 lower{kFar, kFar, kFar}, upper{-kFar, -kFar, -kFar};
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
-
-  void add(const Vec3& a, const Vec3& b) {
-    lower = {std::min(lower.x, a.x), std::min(lower.y, a.y), std::min(lower.z, a.z)};
-    upper = {std::max(upper.x, b.x), std::max(upper.y, b.y), std::max(upper.z, b.z)};
-  }
-};
-
 /// Sums over a group of lights, and what the group costs where it is taken for one light: its power, spread over its
 /// size and over the directions it shines to. Those are pi when all face one way and 4 pi when they face all ways.
 struct Group {
@@ -27,14 +17,14 @@ struct Group {
   std::size_t count = 0;
 
   void add(const LightBounds& light) {
-    box.add(light.lower, light.upper);
+    box.add({light.lower, light.upper});
     power += light.power;
     facing += light.axis * light.power;
     ++count;
   }
   void add(const Group& g) {
     if (g.count == 0) return;
-    box.add(g.box.lower, g.box.upper);
+    box.add(g.box);
     power += g.power;
     facing += g.facing;
     count += g.count;
@@ -73,7 +63,7 @@ struct LightTree::Builder {
     Box middles;
     for (std::uint32_t i = whole.begin; i < whole.end; ++i) {
       const Vec3 m = (at(i).lower + at(i).upper) / 2;
-      middles.add(m, m);
+      middles.add(m);
     }
     const auto bin = [&](const LightBounds& light, int axis) {
       const double extent = middles.upper[axis] - middles.lower[axis];
@@ -131,6 +121,15 @@ struct LightTree::Builder {
     node.sin_cone[k] = f(std::sin(cone));
   }
 
+  void fill(Reach& reach, std::size_t k, const Range& r) const {
+    Box box;
+    for (std::uint32_t i = r.begin; i < r.end; ++i) box.add(*at(i).reach);
+    const Vec3 lower = box.lower * tree.scale_, upper = box.upper * tree.scale_;
+    const auto f = [](double x) { return static_cast<float>(x); };
+    reach.lower_x[k] = f(lower.x), reach.lower_y[k] = f(lower.y), reach.lower_z[k] = f(lower.z);
+    reach.upper_x[k] = f(upper.x), reach.upper_y[k] = f(upper.y), reach.upper_z[k] = f(upper.z);
+  }
+
   void build() {
     struct Task {
       std::uint32_t node;
@@ -154,8 +153,10 @@ struct LightTree::Builder {
       }
       Node node{};
       node.size2 += 1.0f;  // children that are missing have no power, and no 0 / 0 either
+      Reach reach{};
       for (std::size_t k = 0; k < parts.size(); ++k) {
         fill(node, k, parts[k]);
+        if (lights.front().reach) fill(reach, k, parts[k]);
         const auto slot = static_cast<std::uint32_t>(task.node * kWidth + k);
         if (parts[k].count() == 1) {
           const std::uint32_t light = tree.order_[parts[k].begin];
@@ -169,6 +170,9 @@ struct LightTree::Builder {
         }
       }
       tree.nodes_[task.node] = node;
+      if (!lights.front().reach) continue;
+      tree.reach_.resize(tree.nodes_.size());
+      tree.reach_[task.node] = reach;
     }
   }
 };
@@ -196,7 +200,8 @@ LightTree::Receiver::Receiver(const LightTree& tree, const Vec3& point, const Ve
   node_.fill(kNone);
 }
 
-LightTree::Lanes LightTree::importance(const Node& node, const Receiver& at) const {
+LightTree::Lanes LightTree::importance(std::uint32_t number, const Receiver& at) const {
+  const Node& node = nodes_[number];
   // Grazing light is rare and not nothing; rounding may also find it too weak.
   constexpr float kGrazing = 1e-4f;
   const Lanes none{}, one = none + 1.0f, tiny = none + 1e-14f, grazing = none + kGrazing;
@@ -227,14 +232,21 @@ LightTree::Lanes LightTree::importance(const Node& node, const Receiver& at) con
   cos_q = off_axis >= node.cos_cone ? one : cos_q;
 
   const Lanes value = node.power * larger(cos_p, grazing) * larger(cos_q, grazing) / larger(d2, node.size2);
-  return (height_p > none) & (cos_q > none) ? value : none;
+  const Lanes found = (height_p > none) & (cos_q > none) ? value : none;
+  if (reach_.empty()) return found;
+  const Reach& reach = reach_[number];
+  const Lanes x = none + at.x_, y = none + at.y_, z = none + at.z_;
+  return (x >= reach.lower_x) & (x <= reach.upper_x) & (y >= reach.lower_y) & (y <= reach.upper_y) &
+                 (z >= reach.lower_z) & (z <= reach.upper_z)
+             ? found
+             : none;
 }
 
 const LightTree::Shares& LightTree::shares(std::uint32_t node, const Receiver& at) const {
   const std::size_t place = Receiver::place(node);
   Shares& kept = at.shares_[place];
   if (at.node_[place] != node) {
-    const Lanes share = importance(nodes_[node], at);
+    const Lanes share = importance(node, at);
     kept = {share, static_cast<double>(share[0]) + share[1] + share[2] + share[3]};
     at.node_[place] = node;
   }
@@ -277,7 +289,7 @@ double LightTree::probability(std::uint32_t light, const Receiver& at) const {
 
 bool LightTree::reaches(const Vec3& p, const Vec3& n) const {
   if (empty()) return false;
-  const Lanes share = importance(nodes_.front(), {*this, p, n});
+  const Lanes share = importance(0, {*this, p, n});
   return share[0] > 0 || share[1] > 0 || share[2] > 0 || share[3] > 0;
 }
 

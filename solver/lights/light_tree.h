@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "solver/model/box.h"
 #include "solver/model/vec.h"
 
 namespace clerestory {
@@ -16,6 +18,7 @@ struct LightBounds {
   Vec3 axis;          ///< unit, middle of the directions it shines to; zero for all directions alike
   double cone = 0;    ///< half-angle around the axis of what is as strong as the axis [rad]; pi for all directions
   double power = 0;   ///< flux [W] or intensity [W/sr], one of them for a whole tree; > 0
+  std::optional<Box> reach{};  ///< where it is asked for at all; none: everywhere. Of all lights of a tree, or of none
 };
 
 /// Beyond its cone a light falls off with the cosine (a surface that glows) or gives nothing (a spot).
@@ -23,7 +26,7 @@ enum class Falloff { cosine, none };
 
 /// Tree of four children a node. At a receiver point p with normal n a child is chosen in proportion to
 ///   power * (bound of cos at p) * (bound of cos at the light) / max(d^2, size^2)
-/// down to one light. A light has probability 0 only where it cannot shine on p's plane.
+/// down to one light. A light has probability 0 only where it cannot shine on p's plane, or p is out of its reach.
 /// Cost: building O(m log m); choosing and probability() O(log m). 90 bytes a light.
 /// Source: Conty Estevez & Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018; the bounds
 /// are of boxes here and not of spheres, so that lights in the plane of the receiver weigh nothing.
@@ -85,10 +88,16 @@ class LightTree {
   struct Builder;
   static constexpr std::uint32_t kLeaf = 0x80000000;
 
-  Lanes importance(const Node& node, const Receiver& at) const;
+  /// Boxes around what the children reach.
+  struct Reach {
+    Lanes lower_x, lower_y, lower_z, upper_x, upper_y, upper_z;
+  };
+
+  Lanes importance(std::uint32_t node, const Receiver& at) const;
   const Shares& shares(std::uint32_t node, const Receiver& at) const;
 
   std::vector<Node> nodes_;
+  std::vector<Reach> reach_;                  ///< by node; empty: everywhere
   std::vector<std::uint32_t> slot_of_node_;   ///< 4 * parent + which child
   std::vector<std::uint32_t> slot_of_light_;  ///< the same for lights
   std::vector<std::uint32_t> order_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/lights/caustic_leg.h"
+#include "solver/model/box.h"
 #include "solver/model/light_spec.h"
 #include "solver/visibility/mirror_planes.h"
 
@@ -51,6 +52,7 @@ struct LightArea {
   double radius = 0, area = 0;                 ///< radius: farthest point from the centre [m], area [m2]
   double brightness = 0;                       ///< mean radiance that comes out of it [W/(m2 sr)]
   bool sees_sky = true;                        ///< false: of an opening that only surfaces send light through
+  std::optional<Box> reach;                    ///< where it is in view, about; none: not known
 };
 
 /// Positions are in the local frame of the patches.

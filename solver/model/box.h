@@ -34,6 +34,9 @@ struct Box {
     b.upper += Vec3{by, by, by};
     return b;
   }
+  bool contains(const Vec3& p) const {
+    return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z && p.z <= upper.z;
+  }
   bool touches(const Box& b) const {
     return lower.x <= b.upper.x && b.lower.x <= upper.x && lower.y <= b.upper.y && b.lower.y <= upper.y &&
            lower.z <= b.upper.z && b.lower.z <= upper.z;

@@ -64,6 +64,7 @@ enum Stream : std::uint64_t {
   kGapRays = 0x81,
   kGapsSifted = 0x82,
   kGapsSiftedAgain = 0x83,
+  kReach = 0x8a,
   // Rooms, by patch and sweep; in the seed's place as well.
   kRoomRays = 0x85,
   kRoomOrder = 0x86,
@@ -92,6 +93,8 @@ enum Stream : std::uint64_t {
   kLightsOfPoints = 0x56,
   // Pairs of surfaces whose visibility is sampled: one pattern for all.
   kVisibilityPattern = 0x7061747465726e,
+  // Segments to openings and bright areas that may be in view: one pattern for all.
+  kAreasInView = 0x61726561,
 };
 
 }  // namespace clerestory

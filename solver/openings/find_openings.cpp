@@ -36,6 +36,8 @@ constexpr std::size_t kMostCorners = 256;          ///< of an outline; a window 
 constexpr std::size_t kMostCandidates = 5000;      ///< good ones, the best
 constexpr std::size_t kMostTriangles = 2'000'000;  ///< of a model that is searched, for the time it takes
 constexpr std::size_t kMostOpenings = 500;         ///< every point asks each of them what it may give
+constexpr int kRaysOfReach = 512;                  ///< through an opening, to see where it is in view
+constexpr double kBeyondReach = 0.02;              ///< of the diagonal of what they meet
 
 struct SkySeen {
   double share = 0, radiance = 0;  ///< of the rays that escape through air or glass; mean of what they see
@@ -190,6 +192,16 @@ LightArea opening_across(const Gap& gap) {
   return o;
 }
 
+/// Around all that rays meet which come in by an opening, and itself.
+Box reach_of(const LightArea& o, const RayScene& rays, std::uint64_t key) {
+  Box reach = Box::around(o.corners);
+  for (std::uint32_t k = 0; k < kRaysOfReach; ++k) {
+    const Ray ray = ray_through(o, o.normal, key, k, rays.lift());
+    if (const double way = rays.first_surface(ray); std::isfinite(way)) reach.add(ray.origin + ray.direction * way);
+  }
+  return reach.grown(kBeyondReach * length(reach.upper - reach.lower));
+}
+
 }  // namespace
 
 std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& rays, const Lights& lights) {
@@ -251,6 +263,9 @@ std::vector<LightArea> find_openings(const PatchSet& patches, const RayScene& ra
     if (judge.shows_more(opening, openings, stream_key(kGapsSiftedAgain, k)))
       openings.insert(openings.begin() + static_cast<std::ptrdiff_t>(k - 1), std::move(opening));
   }
+  parallel_for(openings.size(), 1, [&](std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) openings[k].reach = reach_of(openings[k], rays, stream_key(kReach, k));
+  });
   return openings;
 }
 

@@ -11,8 +11,8 @@ namespace clerestory {
 namespace {
 
 LightBounds bounds_of(const LightArea& opening) {
-  LightBounds b{opening.centre, opening.centre, opening.normal, 0,
-                std::numbers::pi * opening.area * opening.brightness};
+  LightBounds b{opening.centre, opening.centre, opening.normal, 0, std::numbers::pi * opening.area * opening.brightness,
+                opening.reach};
   for (const auto& triangle : opening.triangles)
     for (const Vec3& c : triangle) {
       b.lower = {std::min(b.lower.x, c.x), std::min(b.lower.y, c.y), std::min(b.lower.z, c.z)};

@@ -1,12 +1,15 @@
 #include "solver/openings/openings.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "solver/form_factors/point_to_polygon.h"
 #include "solver/model/random_stream.h"
+#include "solver/model/streams.h"
 #include "solver/sampling/unit_square.h"
 
 namespace clerestory {
@@ -133,32 +136,106 @@ double about_form_factor(const LightArea& opening, const Vec3& p, const Vec3& n)
   return F;
 }
 
+/// Areas one after another, those that give most first. Form factors cost more than all the rest: they are found for
+/// what may give more than the best that is known.
+class AreasByLight {
+ public:
+  AreasByLight(std::span<const LightArea> areas, const Vec3& p, const Vec3& n) : areas_(areas), p_(p), n_(n) {
+    for (std::uint32_t k = 0; k < areas.size(); ++k) {
+      if (areas[k].reach && !areas[k].reach->contains(p)) continue;
+      if (const double bound = most_it_gives(areas[k], p, n); bound > kNothing)
+        heap_.push_back({{bound * areas[k].brightness, k}, false});
+    }
+    std::make_heap(heap_.begin(), heap_.end(), is_after);
+  }
+
+  std::optional<AreaOver> next() {
+    while (!heap_.empty()) {
+      std::pop_heap(heap_.begin(), heap_.end(), is_after);
+      if (heap_.back().is_known) {
+        const AreaOver found = heap_.back().area;
+        heap_.pop_back();
+        return found;
+      }
+      const std::uint32_t k = heap_.back().area.number;
+      const double F = about_form_factor(areas_[k], p_, n_);
+      if (F > kNothing) {
+        heap_.back() = {{F * areas_[k].brightness, k}, true};
+        std::push_heap(heap_.begin(), heap_.end(), is_after);
+      } else {
+        heap_.pop_back();
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr double kNothing = 1e-9;
+  struct Entry {
+    AreaOver area;  ///< as long as it is not known, what it may give at most
+    bool is_known;
+  };
+  static bool is_after(const Entry& a, const Entry& b) {
+    return a.area.gives != b.area.gives ? a.area.gives < b.area.gives : a.area.number > b.area.number;
+  }
+
+  std::span<const LightArea> areas_;
+  Vec3 p_, n_;
+  std::vector<Entry> heap_;
+};
+
+/// Share of an area that is seen [1]: of segments between 16 points that look and points all over it.
+double share_in_view(const RayScene& scene, const LightArea& area, const Vec3& n,
+                     const std::function<Vec3(std::uint32_t)>& from) {
+  constexpr std::uint32_t kSegments = 16;
+  SegmentPacket packet;
+  unsigned active = 0;
+  for (std::uint32_t k = 0; k < kSegments; ++k) {
+    const auto u = sobol4(k, kAreasInView);
+    const Vec3 p = from(k), q = point_of(area, u[0], u[1]);
+    if (!(dot(q - p, n) > 0) || !(dot(p - q, area.normal) > 0)) continue;
+    packet.set(static_cast<int>(k), p, q + area.normal * scene.lift());
+    active |= 1u << k;
+  }
+  if (active == 0) return 0;
+  return std::popcount(scene.visible16(packet, static_cast<std::uint16_t>(active))) / static_cast<double>(kSegments);
+}
+
 }  // namespace
 
-std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
-                                      std::size_t most, double least_of_best) {
-  constexpr double kNothing = 1e-9;
-  // Form factors cost more than all the rest: those that may give most come first, until none can give as much.
-  thread_local std::vector<std::pair<double, std::uint32_t>> may_give;
-  may_give.clear();
-  for (std::uint32_t k = 0; k < openings.size(); ++k)
-    if (const double bound = most_it_gives(openings[k], p, n); bound > kNothing)
-      may_give.emplace_back(bound * openings[k].brightness, k);
-  std::make_heap(may_give.begin(), may_give.end());
-  std::vector<std::pair<double, std::uint32_t>> found;  // by light, the most first
-  while (!may_give.empty() && (found.size() < most || may_give.front().first > -found.back().first)) {
-    std::pop_heap(may_give.begin(), may_give.end());
-    const std::uint32_t k = may_give.back().second;
-    may_give.pop_back();
-    const double F = about_form_factor(openings[k], p, n), gives = F * openings[k].brightness;
-    if (!(F > kNothing)) continue;
-    found.insert(std::upper_bound(found.begin(), found.end(), std::pair{-gives, k}), {-gives, k});
-    if (found.size() > most) found.pop_back();
+std::vector<AreaOver> areas_over(std::span<const LightArea> areas, const Vec3& p, const Vec3& n, std::size_t most) {
+  std::vector<AreaOver> found;
+  AreasByLight by_light(areas, p, n);
+  while (found.size() < most)
+    if (const auto next = by_light.next())
+      found.push_back(*next);
+    else
+      break;
+  return found;
+}
+
+std::vector<std::uint32_t> areas_in_view(const RayScene& scene, std::span<const LightArea> areas, const Vec3& p,
+                                         const Vec3& n, const std::function<Vec3(std::uint32_t)>& from,
+                                         const AreasWanted& wanted, unsigned long long& rays) {
+  constexpr std::size_t kMostTried = 64;
+  std::vector<AreaOver> found;  // by what is in view of them, the most first
+  AreasByLight by_light(areas, p, n);
+  for (std::size_t tried = 0; tried < kMostTried; ++tried) {
+    const auto next = by_light.next();
+    if (!next) break;
+    if (!found.empty() && next->gives < wanted.least_of_best * found.front().gives) break;
+    if (found.size() == wanted.most && next->gives <= found.back().gives) break;
+    const double gives = next->gives * share_in_view(scene, areas[next->number], n, from);
+    rays += 16;
+    if (!(gives > 0)) continue;
+    const auto after = [](double x, const AreaOver& area) { return x > area.gives; };
+    found.insert(std::upper_bound(found.begin(), found.end(), gives, after), {gives, next->number});
+    if (found.size() > wanted.most) found.pop_back();
   }
   std::vector<std::uint32_t> numbers;
-  for (const auto& [F, k] : found)
-    if (F <= least_of_best * found.front().first) numbers.push_back(k);
-  std::sort(numbers.begin(), numbers.end());
+  for (const AreaOver& area : found)
+    if (area.gives >= wanted.least_of_best * found.front().gives) numbers.push_back(area.number);
+  std::ranges::sort(numbers);
   return numbers;
 }
 

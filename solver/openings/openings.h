@@ -2,6 +2,7 @@
 // Gaps between surfaces through which the sky looks in: found once, then looked at like lamps.
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -50,10 +51,29 @@ double most_it_gives(const LightArea& opening, const Vec3& p, const Vec3& n);
 /// Form factor [1] of the opening when nothing blocks it; 0 from outside of it.
 double form_factor(const LightArea& opening, const Vec3& p, const Vec3& n);
 
-/// The openings (or bright areas) that may matter at p: up to `most` of the largest form factors times brightness, in
-/// the order of their numbers; none that gives less than the share least_of_best of the first.
-std::vector<std::uint32_t> areas_over(std::span<const LightArea> openings, const Vec3& p, const Vec3& n,
-                                      std::size_t most, double least_of_best);
+/// An opening (or bright area) over a place.
+struct AreaOver {
+  double gives;  ///< form factor times brightness: what it gives where all of it is in view, about [W/(m2 sr)]
+  std::uint32_t number;
+};
+
+/// Those over p that give most, in that order, up to `most`.
+std::vector<AreaOver> areas_over(std::span<const LightArea> areas, const Vec3& p, const Vec3& n, std::size_t most);
+
+/// What is worth being looked at.
+struct AreasWanted {
+  std::size_t most;      ///< so many at most
+  double least_of_best;  ///< none that gives less than that share of the best [1]
+};
+
+/// Of those over p the ones in view that give most there, in the order of their numbers: many stand behind walls, and
+/// nearer than what lights the room. Glass is air here.
+///
+/// from  point k of 16 (lifted) that look at them: of a patch, or p itself.
+/// rays  how many were sent, added.
+std::vector<std::uint32_t> areas_in_view(const RayScene& scene, std::span<const LightArea> areas, const Vec3& p,
+                                         const Vec3& n, const std::function<Vec3(std::uint32_t)>& from,
+                                         const AreasWanted& wanted, unsigned long long& rays);
 
 /// Point of the opening, even over its area.
 Vec3 point_of(const LightArea& opening, double u, double v);

@@ -147,6 +147,34 @@ TEST(LightTree, AReceiverThatWasAskedAllThingsAnswersLikeAFreshOne) {
   }
 }
 
+TEST(LightTree, DoesNotAskWhatIsOutOfReach) {
+  // Lights in two rooms side by side, each of which reaches its own only.
+  std::vector<LightBounds> lights;
+  RandomStream random(7);
+  for (std::uint32_t k = 0; k < 200; ++k) {
+    const double room = k % 2;
+    const Vec3 p{10 * (room + random.uniform()), 10 * random.uniform(), 3};
+    lights.push_back({p, p, {0, 0, -1}, 0, 1 + random.uniform(), Box{{10 * room, 0, 0}, {10 * room + 10, 10, 3}}});
+  }
+  const LightTree tree(lights, Falloff::cosine, 20);
+  for (const double x : {9.5, 10.5}) {
+    const LightTree::Receiver at(tree, {x, 5, 1}, {0, 0, 1});
+    double sum = 0;
+    for (std::uint32_t l = 0; l < lights.size(); ++l) {
+      const double probability = tree.probability(l, at);
+      EXPECT_EQ(probability > 0, (l % 2 == 1) == (x > 10)) << "room of light " << l;
+      sum += probability;
+      const LightTree::Choice choice = tree.choose(at, (l + 0.5) / 200);
+      if (choice.probability > 0) {
+        EXPECT_DOUBLE_EQ(choice.probability, tree.probability(choice.light, at));
+      }
+    }
+    EXPECT_GT(sum, 0.5);
+    EXPECT_LE(sum, 1 + 1e-6);
+  }
+  EXPECT_FALSE(tree.reaches({30, 5, 1}, {0, 0, 1}));
+}
+
 TEST(LightTree, ChoosesAsOftenAsItSays) {
   const PatchSet patches = swarm(100);
   const Lit lit(patches);

@@ -217,6 +217,74 @@ TEST(GatherPoint, APlanFromIndoorsServesAPointOutdoors) {
   EXPECT_NEAR(E / gather_point(light, outside, {0, 0, 1}, pattern, rays).E[0], 1, 0.02);  // 1,024 rays and more
 }
 
+/// A corridor 1 m wide behind a hall with sixteen windows, and one window of its own at its far end: all of the hall's
+/// are nearer, and behind a wall.
+struct CorridorBehindAHall {
+  SceneMaker m;
+  std::unique_ptr<Found> found;
+
+  CorridorBehindAHall() {
+    const MaterialId black = m.material("black", 0);
+    const auto wall = [&](const std::vector<Vec3>& corners) { m.polygon(corners, black); };
+    wall({{0, 0, 0}, {8, 0, 0}, {8, 5, 0}, {0, 5, 0}});
+    wall({{0, 0, 3}, {0, 5, 3}, {8, 5, 3}, {8, 0, 3}});
+    wall({{0, 4, 0}, {8, 4, 0}, {8, 4, 3}, {0, 4, 3}});  // between them
+    wall({{0, 5, 0}, {8, 5, 0}, {8, 5, 3}, {0, 5, 3}});
+    wall({{8, 0, 0}, {8, 0, 3}, {8, 5, 3}, {8, 5, 0}});
+    wall({{0, 0, 0}, {0, 4, 0}, {0, 4, 3}, {0, 0, 3}});
+    const auto at_end = [&](double y0, double z0, double y1, double z1) {
+      wall({{0, y0, z0}, {0, y1, z0}, {0, y1, z1}, {0, y0, z1}});
+    };
+    at_end(4, 0, 5, 1), at_end(4, 2, 5, 3), at_end(4, 1, 4.3, 2), at_end(4.7, 1, 5, 2);
+    const auto front = [&](double x0, double z0, double x1, double z1) {
+      wall({{x0, 0, z0}, {x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}});
+    };
+    front(0, 0, 8, 1), front(0, 2, 8, 3), front(0, 1, 0.1, 2);
+    for (int k = 0; k < 16; ++k) front(0.5 * k + 0.4, 1, 0.5 * k + 0.6, 2);
+    found = std::make_unique<Found>(m);
+  }
+};
+
+TEST(AreasInView, AreNotThoseBehindAWallHoweverNear) {
+  const CorridorBehindAHall scene;
+  const Found& found = *scene.found;
+  ASSERT_GE(found.lights.openings.size(), 17u);
+  const Vec3 p = Vec3{7.5, 4.5, 1.5} - found.patches.origin, n{-0.8, -0.6, 0};
+  const std::vector<AreaOver> over = areas_over(found.lights.openings, p, n, 8);
+  const auto looks_along = [&](std::uint32_t k) { return found.lights.openings[k].normal.x > 0.5; };
+  unsigned long long rays = 0;
+  const std::vector<std::uint32_t> in_view = areas_in_view(
+      found.rays, found.lights.openings, p, n, [&](std::uint32_t) { return p; }, {8, 0}, rays);
+  ASSERT_EQ(in_view.size(), 1u);
+  EXPECT_TRUE(looks_along(in_view[0]));
+  EXPECT_GT(rays, 0u);
+  for (std::size_t k = 1; k < over.size(); ++k) EXPECT_GE(over[k - 1].gives, over[k].gives);
+  // What an opening cannot reach is not asked: its own is the first, though the hall's would give more.
+  ASSERT_FALSE(over.empty());
+  EXPECT_EQ(over[0].number, in_view[0]);
+  std::vector<LightArea> of_unknown_reach = found.lights.openings;
+  for (LightArea& o : of_unknown_reach) o.reach.reset();
+  for (const AreaOver& area : areas_over(of_unknown_reach, p, n, 8)) EXPECT_FALSE(looks_along(area.number));
+  EXPECT_EQ(areas_in_view(
+                found.rays, of_unknown_reach, p, n, [&](std::uint32_t) { return p; }, {8, 0}, rays),
+            in_view);
+}
+
+TEST(GatherPoint, FindsAWindowThatManyBehindAWallAreNearerThan) {
+  const CorridorBehindAHall scene;
+  const Problem problem{scene.found->patches, scene.found->rays, scene.found->lights};
+  const Field dark(problem.patches.patch_count(), 1);
+  const Vec3 p = Vec3{7.5, 4.5, 0.5} - problem.patches.origin, n{-0.8, -0.6, 0};
+  const Illumination light(problem, dark);
+  unsigned long long rays = 0;
+  // Looking up through the window: sky of radiance 1 in all of it.
+  double exact = 0;
+  for (const LightArea& o : problem.lights.openings)
+    if (o.normal.x > 0.5) exact += std::numbers::pi * form_factor(o, p, n);
+  const double E = gather_point(light, p, n, GatherPattern(test::gather_quality({16, 256, 256}), 1), rays).E[0];
+  EXPECT_NEAR(E / exact, 1, 2e-3);  // 0.4 % of the directions: by chance, one of the 256 rays, and 100 % off
+}
+
 TEST(DirectLight, ThroughOpeningsAndBundlesTogetherIsTheSkysLight) {
   // A window of 2 x 1 m; the bundle alone, with many rays, is the judge.
   SceneMaker m;

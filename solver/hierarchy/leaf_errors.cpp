@@ -43,17 +43,16 @@ std::vector<std::uint32_t> LeafErrors::changed_leaves() {
   return leaves;
 }
 
-void LeafErrors::find_darkest(const std::vector<std::uint32_t>& leaves) {
+void LeafErrors::find_rooms(const std::vector<std::uint32_t>& leaves) {
   const PatchSet& patches = mesh_.patches();
-  std::vector<double> area(patches.room_count());
-  darkest_.resize(area.size());
+  mean_.resize(patches.room_count()), area_.resize(mean_.size());
   for (const std::uint32_t leaf : leaves) {
     const std::size_t room = patches.room_of(mesh_[leaf].patch);
-    darkest_[room] += kDark * mesh_[leaf].area * mean_of(points_[leaf], E_);
-    area[room] += mesh_[leaf].area;
+    mean_[room] += mesh_[leaf].area * mean_of(points_[leaf], E_);
+    area_[room] += mesh_[leaf].area;
   }
-  for (std::size_t room = 0; room < area.size(); ++room)
-    if (area[room] > 0) darkest_[room] /= area[room];
+  for (std::size_t room = 0; room < area_.size(); ++room)
+    if (area_[room] > 0) mean_[room] /= area_[room];
 }
 
 std::vector<LeafError> LeafErrors::of_changed() {
@@ -62,7 +61,7 @@ std::vector<LeafError> LeafErrors::of_changed() {
     soft_E_.push_back(E_.back() - luminous_mean(field_.delta_light[p]));
   }
   const std::vector<std::uint32_t> leaves = changed_leaves();
-  if (darkest_.empty()) find_darkest(leaves);
+  if (mean_.empty()) find_rooms(leaves);
   find_gradients(mesh_, leaves, E_, is_changed_, gradient_);
   find_gradients(mesh_, leaves, soft_E_, is_changed_, soft_gradient_);
   std::vector<LeafError> errors;
@@ -76,9 +75,12 @@ std::vector<LeafError> LeafErrors::of_changed() {
       const auto [low, high] = std::minmax({of[point[0]], of[point[1]], of[point[2]]});
       return mesh_[leaf].penumbra ? off : std::max(off, kSteep * (high - low));
     };
-    errors.push_back({leaf, off_in(E_, gradient_), off_in(soft_E_, soft_gradient_),
-                      std::max(mean_of(point, E_), darkest_[mesh_.patches().room_of(mesh_[leaf].patch)]),
-                      mean_of(point, field_.std_error)});
+    const std::size_t room = mesh_.patches().room_of(mesh_[leaf].patch);
+    const double off = off_in(E_, gradient_), soft = off_in(soft_E_, soft_gradient_),
+                 E = std::max(mean_of(point, E_), kDark * mean_[room]),
+                 share = area_[room] > 0 ? std::sqrt(mesh_[leaf].area / area_[room]) : 0;
+    errors.push_back({leaf, off, soft, E, mean_of(point, field_.std_error), E > 0 ? off / E * share : 0,
+                      mean_[room] > 0 ? soft / mean_[room] * share : 0});
   }
   return errors;
 }

@@ -16,6 +16,8 @@ struct LeafError {
   double soft;         ///< the same without sun and luminaires, whose edges no halving resolves
   double E;            ///< irradiance there; at least the darkest that counts
   double std_error;    ///< standard error at the vertices
+  /// What it adds to RMS errors of its room [1]: `off` to that of relative errors, `soft` to that relative to the mean.
+  double relative, of_mean;
 };
 
 /// Errors of leaves while elements are halved: from one look to the next only those around new points change.
@@ -30,7 +32,7 @@ class LeafErrors {
 
  private:
   std::vector<std::uint32_t> changed_leaves();
-  void find_darkest(const std::vector<std::uint32_t>& leaves);
+  void find_rooms(const std::vector<std::uint32_t>& leaves);
 
   const ElementMesh& mesh_;
   const VertexField& field_;
@@ -38,7 +40,7 @@ class LeafErrors {
   std::vector<double> E_, soft_E_;              ///< by point, luminous means
   std::vector<bool> is_changed_;                ///< by point, since the last call
   std::vector<Vec3> gradient_, soft_gradient_;  ///< by point
-  std::vector<double> darkest_;                 ///< by room: the darkest irradiance that counts, as of the first call
+  std::vector<double> mean_, area_;             ///< by room, of what was gathered at the first call
 };
 
 }  // namespace clerestory

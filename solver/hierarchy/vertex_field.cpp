@@ -29,6 +29,9 @@ constexpr double kPointsOfHalf = 2;  ///< that halving an element makes at most,
 /// be shorter than the shortest in proportion, down to that share of it: at the feet of furniture and in window
 /// reveals.
 constexpr double kMuchOff = 2, kFinest = 0.25;
+/// Error of a room that is aimed at, relative to the mean, in tolerances: by what elements are off at most, in the
+/// middle of an edge, twice what they are. Shares of the shortest edge that they may have for it.
+constexpr double kOfRoom = 1, kFinestForRoom = 1.0 / 32;
 /// Shortest edges: so far off the pilot rays of a point tell enough, where it has nearly the same horizon (cosine).
 constexpr double kNearby = 4, kSameHorizon = 0.95;
 /// Of the sun and luminaires at the point that sent them: where there is less, what is little beside them is not.
@@ -270,45 +273,74 @@ class Gatherer {
 };
 
 struct Candidate {
-  double error;  ///< relative to the irradiance there, times the root of its area: as it adds to a mean square [m]
+  double error;  ///< what it adds to a RMS error of its room [1]
   std::uint32_t leaf;
 };
 
-/// Leaves that interpolate worse than the tolerance, while they are halved.
+/// Leaves that interpolate worse than the tolerance, and those whose light makes most of the error of a room, relative
+/// to the room's mean, until that is within the tolerance: a sill in the sun may be within 5 % and as far off as all of
+/// the room is bright.
 class TooCoarse {
  public:
   TooCoarse(const ElementMesh& mesh, const VertexField& field, const FieldOptions& options)
       : mesh_(mesh), options_(options), errors_(mesh, field) {}
 
   /// As the field and the mesh are now, the worst first.
-  const std::vector<Candidate>& find() {
-    std::vector<bool> is_new(mesh_.size());
-    std::vector<Candidate> found;
+  std::vector<Candidate> find() {
+    relative_.resize(mesh_.size()), of_mean_.resize(mesh_.size());
     for (const LeafError& e : errors_.of_changed()) {
-      is_new[e.leaf] = true;
-      if (is_worth_halving(e)) found.push_back({e.off / e.E * std::sqrt(mesh_[e.leaf].area), e.leaf});
+      relative_[e.leaf] = is_worth_halving(e) ? static_cast<float>(e.relative) : 0;
+      of_mean_[e.leaf] = may_be_halved_for_room(e) ? static_cast<float>(e.of_mean) : 0;
     }
-    std::erase_if(worst_, [&](const Candidate& c) { return is_new[c.leaf] || mesh_[c.leaf].parted; });
-    worst_.insert(worst_.end(), found.begin(), found.end());
-    std::sort(worst_.begin(), worst_.end(), [](const Candidate& a, const Candidate& b) {
+    const std::vector<std::uint32_t> leaves = mesh_.leaves();
+    const std::vector<double> least = least_for_rooms(leaves);
+    std::vector<Candidate> worst;
+    for (const std::uint32_t leaf : leaves) {
+      const double of_mean = of_mean_[leaf] > least[room_of(leaf)] ? of_mean_[leaf] : 0;
+      if (const double error = std::max<double>(relative_[leaf], of_mean); error > 0) worst.push_back({error, leaf});
+    }
+    std::sort(worst.begin(), worst.end(), [](const Candidate& a, const Candidate& b) {
       return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
     });
-    return worst_;
+    return worst;
   }
 
  private:
+  std::uint32_t room_of(std::uint32_t leaf) const { return mesh_.patches().room_of(mesh_[leaf].patch); }
   bool is_worth_halving(const LeafError& e) const {
-    const PatchId patch{std::size_t{mesh_[e.leaf].patch}};
-    double shortest = options_.shortest_edge.of(mesh_.patches(), patch);
-    if (!mesh_.patches().has_outline(patch))  // what comes through a slit falls on less than any element
-      shortest *= std::clamp(kMuchOff * options_.tolerance * e.E / e.soft, kFinest, 1.0);
-    return mesh_.longest_edge(e.leaf) > shortest && e.off > std::max(options_.tolerance * e.E, e.std_error);
+    const double much = e.soft / (options_.tolerance * e.E);
+    return is_longer(e.leaf, std::clamp(kMuchOff / much, kFinest, 1.0)) &&
+           e.off > std::max(options_.tolerance * e.E, e.std_error);
+  }
+  bool may_be_halved_for_room(const LeafError& e) const {
+    return is_longer(e.leaf, kFinestForRoom) && e.soft > e.std_error;
+  }
+  /// Than that share of the shortest edge; what comes through a slit falls on less than any element.
+  bool is_longer(std::uint32_t leaf, double share) const {
+    const std::uint32_t patch = mesh_[leaf].patch;
+    const double shortest = options_.shortest_edge.of(mesh_.patches(), patch);
+    return mesh_.longest_edge(leaf) > (mesh_.patches().has_outline(PatchId{std::size_t{patch}}) ? 1 : share) * shortest;
+  }
+
+  /// What a leaf adds if all leaves of its room add as much and together what is aimed at; infinite where they do not
+  /// add more than that.
+  std::vector<double> least_for_rooms(const std::vector<std::uint32_t>& leaves) const {
+    std::vector<double> square(mesh_.patches().room_count()), count(square.size());
+    for (const std::uint32_t leaf : leaves) {
+      square[room_of(leaf)] += static_cast<double>(of_mean_[leaf]) * of_mean_[leaf];
+      ++count[room_of(leaf)];
+    }
+    const double aim = kOfRoom * options_.tolerance;
+    std::vector<double> least(square.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t room = 0; room < least.size(); ++room)
+      if (square[room] > aim * aim) least[room] = aim / std::sqrt(count[room]);
+    return least;
   }
 
   const ElementMesh& mesh_;
   const FieldOptions& options_;
   LeafErrors errors_;
-  std::vector<Candidate> worst_;
+  std::vector<float> relative_, of_mean_;  ///< by leaf, as of LeafError; 0 where it is not worth halving for it
 };
 
 /// Elements that a round may mark: about half of the points that are left, as one makes two with its neighbours; so the

@@ -256,7 +256,7 @@ void fill_unknown(const ElementMesh& mesh, const std::vector<std::uint32_t>& tra
 
 void view_errors(const ElementMesh& mesh, const VertexField& field, DebugShapes<3>& out) {
   std::vector<double> interpolation, std_error, halvings;
-  for (const auto& [leaf, off, soft, E, std_error_there] : LeafErrors(mesh, field).of_changed()) {
+  for (const auto& [leaf, off, soft, E, std_error_there, relative, of_mean] : LeafErrors(mesh, field).of_changed()) {
     out.shapes.push_back(mesh.corner_positions(leaf));
     interpolation.push_back(E > 0 ? off / E : 0);
     std_error.push_back(E > 0 ? std_error_there / E : 0);

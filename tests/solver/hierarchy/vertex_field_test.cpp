@@ -75,6 +75,45 @@ TEST(GatherField, ATighterToleranceInterpolatesBetter) {
   }
 }
 
+TEST(GatherField, HalvesABrightStripOnForTheRoomThatItIsIn) {
+  // A sill 4 cm wide before a window of its length, under a lintel: there it is a hundred times as bright as the room,
+  // and half as bright at its ends. Against the same gather at the middle of each of its leaves.
+  testing::SceneMaker maker;
+  const MaterialId black = maker.material("black", 0);
+  maker.edit(black).sides = 1;
+  const MaterialId lamp = maker.material("lamp", 0);
+  maker.edit(lamp).sides = 1, maker.edit(lamp).exitance = Spectrum(1000);
+  maker.polygon({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}}, black);
+  maker.polygon({{0, 0, 2.5}, {0, 3, 2.5}, {4, 3, 2.5}, {4, 0, 2.5}}, black);
+  maker.polygon({{1, 3, 1}, {2, 3, 1}, {2, 3.04, 1}, {1, 3.04, 1}}, black);
+  maker.polygon({{1, 3.04, 1}, {2, 3.04, 1}, {2, 3.04, 1.5}, {1, 3.04, 1.5}}, lamp);
+  const MeshedRoom room(std::move(maker), 0.6);
+  const auto error_of_sill = [&](const FieldOptions& options) {
+    ElementMesh mesh(room.patches, room.map);
+    const Field B = emission(room.patches);
+    const VertexField field = gather_field(room.problem(), B, mesh, options);
+    const Problem problem = room.problem();
+    const Illumination light(problem, B);
+    const GatherPattern pattern(options.quality, 1);
+    double squares = 0, flux = 0, area = 0, of_room = 0;
+    for (const std::uint32_t leaf : mesh.leaves()) {
+      const auto point = mesh.points_of(leaf);
+      const auto x = mesh.corner_positions(leaf);
+      const Vec3 n = room.patches.normal[mesh[leaf].patch], c = (x[0] + x[1] + x[2]) / 3;
+      const double linear = (field.E[point[0]][0] + field.E[point[1]][0] + field.E[point[2]][0]) / 3,
+                   a = mesh[leaf].area;
+      flux += a * linear, of_room += a;
+      if (n.z < 0.5 || std::abs(c.z + room.patches.origin.z - 1) > 1e-6) continue;
+      unsigned long long rays = 0;
+      const double E = gather_point(light, c + n * room.rays.lift(), n, pattern, rays).E[0];
+      squares += a * (linear - E) * (linear - E), area += a;
+    }
+    EXPECT_NEAR(area, 0.04, 1e-9);
+    return std::sqrt(squares / of_room) / (flux / of_room);
+  };
+  EXPECT_LT(error_of_sill({.tolerance = 0.05, .shortest_edge = 0.2, .quality = kFew}), 0.03);
+}
+
 TEST(GatherField, PointsOfOnePlaceTakeEachOthersLightButForLuminaires) {
   // Elements of 8 cm where none is halved below 60 cm: what is within 15 cm on a face counts as one place.
   testing::SceneMaker maker = testing::room_with_box();
